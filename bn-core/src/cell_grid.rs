@@ -1,0 +1,4 @@
+//! placeholder
+/// Grid.
+#[derive(Debug)]
+pub struct CellGrid;
