@@ -1,1 +1,40 @@
-//! bn-samplers.
+//! Generators of sampling patterns on the unit torus.
+//!
+//! Each method is a struct whose public fields are its options; [`Sampler::sample`] makes a
+//! pattern of n points from a seed and reports how it went. [`METHODS`] lists them all with their
+//! sources and options, and [`find`] looks one up by name, so that a program can offer every
+//! method without knowing any.
+//!
+//! ```
+//! use bn_core::{Seed, Unobserved};
+//! use bn_samplers::{Sampler, Stochastic};
+//!
+//! // A method chosen in the code, options typed …
+//! let sample = Stochastic.sample(256, Seed::new(1), &Unobserved)?;
+//! assert_eq!(sample.points.len(), 256);
+//!
+//! // … and the same one chosen by name, options as text.
+//! let sampler = bn_samplers::find("random")?.with_options([])?;
+//! assert_eq!(sampler.sample(256, Seed::new(1), &Unobserved)?, sample);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Invariant: never prints, reads no file, keeps no state between two samples; the same options,
+//! count and seed give the same bytes on any machine and number of threads.
+
+mod error;
+mod method;
+mod names;
+mod options;
+mod registry;
+mod report;
+mod sampler;
+mod stochastic;
+
+pub use error::SampleError;
+pub use method::{CountRule, Method, PointOrder};
+pub use options::{DefaultValue, OptionError, OptionKind, OptionSpec, OptionValues};
+pub use registry::{METHODS, UnknownMethod, find};
+pub use report::{Figure, FigureValue, Report};
+pub use sampler::{Sample, Sampler};
+pub use stochastic::Stochastic;
