@@ -22,19 +22,32 @@
 //! Invariant: never prints, reads no file, keeps no state between two samples; the same options,
 //! count and seed give the same bytes on any machine and number of threads.
 
+mod digits;
 mod error;
+mod halton;
+mod hexagonal;
+mod jittered;
 mod method;
 mod names;
 mod options;
+mod r2;
 mod registry;
+mod regular;
 mod report;
 mod sampler;
+mod sobol;
 mod stochastic;
 
 pub use error::SampleError;
+pub use halton::Halton;
+pub use hexagonal::Hexagonal;
+pub use jittered::{Displacement, Jittered};
 pub use method::{CountRule, Method, PointOrder};
 pub use options::{DefaultValue, OptionError, OptionKind, OptionSpec, OptionValues};
+pub use r2::R2;
 pub use registry::{METHODS, UnknownMethod, find};
+pub use regular::Regular;
 pub use report::{Figure, FigureValue, Report};
 pub use sampler::{Sample, Sampler};
+pub use sobol::{Scramble, Sobol};
 pub use stochastic::Stochastic;

@@ -10,7 +10,7 @@ pub(crate) fn nearest_name<'a>(
         .map(|candidate| (edit_distance(name, candidate), candidate))
         .min_by_key(|&(distance, _)| distance)?;
     let length = best.chars().count();
-    (distance <= (length / 3).max(1)).then_some(best)
+    (distance <= length.div_ceil(3)).then_some(best)
 }
 
 /// The number of letters to insert, delete or replace to get from `a` to `b` (Levenshtein), only

@@ -3,13 +3,21 @@
 use thiserror::Error;
 
 use crate::names::nearest_name;
-use crate::{Method, stochastic};
+use crate::{Method, halton, hexagonal, jittered, r2, regular, sobol, stochastic};
 
 /// Every method, in the order of the thesis's appendix B, then those that it doesn't show.
 ///
 /// Help texts, lists, tables, tests and benches are made from this slice: a new method is one
 /// file and one line here.
-pub const METHODS: &[&Method] = &[&stochastic::METHOD];
+pub const METHODS: &[&Method] = &[
+    &stochastic::METHOD,
+    &jittered::METHOD,
+    &regular::METHOD,
+    &hexagonal::METHOD,
+    &halton::METHOD,
+    &sobol::METHOD,
+    &r2::METHOD,
+];
 
 /// There is no method of this name.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use bn_core::{Observer, PointSet, Seed};
+use bn_core::{DVec2, Observer, PointSet, Seed};
 
 use crate::{Report, SampleError};
 
@@ -30,4 +30,12 @@ pub struct Sample {
     pub points: PointSet,
     /// What the method has to say about the run.
     pub report: Report,
+}
+
+impl Sample {
+    /// The sample of points that are in [0, 1)² by construction.
+    pub(crate) fn new(points: Vec<DVec2>, report: Report) -> Self {
+        let points = PointSet::new(points).expect("methods make points of the unit torus");
+        Self { points, report }
+    }
 }

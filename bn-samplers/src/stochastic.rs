@@ -1,6 +1,6 @@
 //! Uniform random points.
 
-use bn_core::{DVec2, Observer, PointSet, Progress, Seed};
+use bn_core::{DVec2, Observer, Progress, Seed};
 use rand::RngExt;
 use rayon::prelude::*;
 
@@ -37,9 +37,7 @@ impl Sampler for Stochastic {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
         check_count(METHOD.name, n)?;
         observe(observer, &Progress::new("drawing", 0, Some(n as u64)))?;
-        let points = uniform_points(n, seed, 0)?;
-        let points = PointSet::new(points).expect("uniform numbers lie in [0, 1)");
-        Ok(Sample { points, report: Report::new() })
+        Ok(Sample::new(uniform_points(n, seed, 0)?, Report::new()))
     }
 }
 

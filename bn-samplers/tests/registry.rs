@@ -1,0 +1,270 @@
+//! One suite over all methods: what every sampler promises.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use bn_core::{Observer, PointSet, Progress, Seed, Unobserved, torus};
+use bn_samplers::{
+    CountRule, DefaultValue, METHODS, Method, OptionError, OptionKind, Sample, SampleError, find,
+};
+
+const SMALL: [usize; 9] = [1, 2, 3, 4, 5, 7, 16, 64, 100];
+
+fn sample(method: &Method, n: usize, seed: u64) -> Result<Sample, SampleError> {
+    let sampler = method.with_options([]).expect("defaults are valid");
+    sampler.sample(n, Seed::new(seed), &Unobserved)
+}
+
+/// The possible count nearest to `n`.
+fn possible(method: &Method, n: usize) -> usize {
+    match method.counts {
+        CountRule::Square => n.isqrt().pow(2),
+        CountRule::PowerOfTwo => n.next_power_of_two(),
+        _ => n,
+    }
+}
+
+fn assert_valid(method: &Method, n: usize, set: &PointSet) {
+    if method.counts != CountRule::Approximate {
+        assert_eq!(set.len(), n, "{}", method.name);
+    }
+    for p in set.points() {
+        assert!(torus::contains(*p), "{} of {n} points has {p}", method.name);
+    }
+}
+
+#[test]
+fn names_are_unique_and_found() {
+    let mut names = std::collections::BTreeSet::new();
+    for method in METHODS {
+        for name in method.aliases.iter().chain([&method.name]) {
+            assert!(names.insert(*name), "{name} is used twice");
+            assert_eq!(find(name).expect("known").name, method.name);
+            assert_eq!(
+                find(&name.to_uppercase().replace('-', "_")).expect("known").name,
+                method.name
+            );
+        }
+    }
+    assert_eq!(find("stochastik").expect_err("misspelt").nearest, Some("stochastic"));
+    assert_eq!(find("nosuch").expect_err("unknown").nearest, None);
+}
+
+#[test]
+fn small_counts_are_exact_or_refused_with_the_nearest() {
+    for method in METHODS {
+        for n in SMALL {
+            match sample(method, n, 1) {
+                Ok(sample) => assert_valid(method, n, &sample.points),
+                Err(error @ SampleError::InvalidCount { nearest, .. }) => {
+                    assert_ne!(possible(method, n), n, "{}: {error}", method.name);
+                    assert!(error.is_usage());
+                    assert!(sample(method, nearest, 1).is_ok(), "{}: {error}", method.name);
+                }
+                Err(error) => panic!("{} of {n} points: {error}", method.name),
+            }
+        }
+    }
+}
+
+#[test]
+fn impossible_counts_are_refused_at_once() {
+    for method in METHODS {
+        for (n, nearest) in [(0, 1), (usize::MAX, PointSet::MAX_POINTS)] {
+            let error = sample(method, n, 1).expect_err("no such count");
+            assert!(error.is_usage(), "{}: {error}", method.name);
+            let named = matches!(error, SampleError::InvalidCount { nearest: named, .. } if named == nearest);
+            assert!(named, "{}: {error}", method.name);
+        }
+    }
+}
+
+#[test]
+fn repeatable_on_any_number_of_threads() {
+    for method in METHODS {
+        for n in [100, 9000] {
+            let n = possible(method, n);
+            let on_threads = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                pool.expect("threads").install(|| sample(method, n, 5)).expect("possible")
+            };
+            let one = on_threads(1);
+            assert!(one == on_threads(2), "{} of {n} points", method.name);
+            assert_valid(method, n, &one.points);
+        }
+    }
+}
+
+#[test]
+fn seeds_matter_where_stated() {
+    for method in METHODS {
+        let n = possible(method, 64);
+        let set = |seed| method.with_options([]).expect("valid").sample(n, seed, &Unobserved);
+        let first = set(Seed::new(1)).expect("possible").points;
+        for other in [Seed::new(2), Seed::new(1).for_set(1)] {
+            let differs = set(other).expect("possible").points != first;
+            assert_eq!(differs, method.seeded, "{}", method.name);
+        }
+    }
+}
+
+#[test]
+fn default_values_change_nothing() {
+    for method in METHODS {
+        let defaults: Vec<_> = method
+            .options
+            .iter()
+            .filter_map(|spec| match spec.default {
+                DefaultValue::Value(text) => Some((spec.name, text)),
+                DefaultValue::Absent(_) => None,
+            })
+            .collect();
+        let given = method.with_options(defaults).expect("defaults are valid");
+        let none = method.with_options([]).expect("valid");
+        assert_eq!(format!("{given:?}"), format!("{none:?}"), "{}", method.name);
+    }
+}
+
+/// Texts at and beyond the ends of an option's range: (valid, invalid).
+fn extremes(kind: OptionKind) -> (Vec<String>, Vec<String>) {
+    let (valid, mut invalid): (Vec<String>, Vec<String>) = match kind {
+        OptionKind::Flag => (vec!["true".into(), "false".into()], vec!["maybe".into()]),
+        OptionKind::Integer { min, max } => {
+            (vec![min.to_string(), max.to_string()], vec!["-1".into(), "1e3".into()])
+        }
+        OptionKind::Real { min, max } => (
+            vec![min.to_string(), max.to_string()],
+            ["nan", "inf", "-inf", "1e400", "0x1"].map(String::from).to_vec(),
+        ),
+        OptionKind::Choice(words) => {
+            (words.iter().map(|&word| word.into()).collect(), vec!["nosuch".into()])
+        }
+        OptionKind::Text => (vec![], vec![]),
+    };
+    if kind != OptionKind::Text {
+        invalid.push(String::new());
+    }
+    (valid, invalid)
+}
+
+#[test]
+fn absurd_options_end_in_a_pattern_or_a_clear_error() {
+    for method in METHODS {
+        for spec in method.options {
+            let (valid, invalid) = extremes(spec.kind);
+            for text in &invalid {
+                let error = method.with_options([(spec.name, &**text)]).expect_err(text);
+                assert!(error.to_string().contains(spec.name), "{error}");
+            }
+            for text in &valid {
+                let Ok(sampler) = method.with_options([(spec.name, &**text)]) else { continue };
+                for n in [1, 16, 64] {
+                    match sampler.sample(n, Seed::new(1), &Unobserved) {
+                        Ok(sample) => assert_valid(method, n, &sample.points),
+                        Err(error) => assert!(!error.to_string().is_empty()),
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn misspelt_options_are_named() {
+    let jittered = find("jittered").expect("known");
+    let error = jittered.with_options([("widht", "1")]).expect_err("misspelt");
+    assert!(error.to_string().ends_with("did you mean --width?"), "{error}");
+    let error = jittered.with_options([("distribution", "gausian")]).expect_err("misspelt");
+    assert!(error.to_string().ends_with("did you mean gaussian?"), "{error}");
+    let error = jittered.with_options([("width", "-2")]).expect_err("out of range");
+    assert!(error.to_string().contains("a number from 0 to"), "{error}");
+    let error = jittered.with_options([("width", "1"), ("width", "2")]).expect_err("repeated");
+    assert_eq!(error, OptionError::Repeated { option: "width" });
+    let error = find("regular").expect("known").with_options([("x", "1")]).expect_err("none");
+    assert!(error.to_string().ends_with("it has no options"), "{error}");
+}
+
+/// Asks to stop at the call numbered `at`.
+struct StopAt {
+    at: u32,
+    calls: AtomicU32,
+}
+
+impl Observer for StopAt {
+    fn observe(&self, progress: &Progress<'_>) -> ControlFlow<()> {
+        assert!(!progress.stage.is_empty());
+        assert!(progress.total.is_none_or(|total| progress.done <= total), "{progress:?}");
+        if self.calls.fetch_add(1, Ordering::Relaxed) >= self.at {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+}
+
+#[test]
+fn every_method_can_be_stopped() {
+    for method in METHODS {
+        let sampler = method.with_options([]).expect("valid");
+        let n = possible(method, 2000);
+        for at in [0, 1, 5] {
+            let observer = StopAt { at, calls: AtomicU32::new(0) };
+            let result = sampler.sample(n, Seed::new(1), &observer);
+            let asked_to_stop = observer.calls.into_inner() > at;
+            assert!(at > 0 || asked_to_stop, "{} never asks", method.name);
+            if asked_to_stop {
+                assert_eq!(result.err(), Some(SampleError::Cancelled), "{}", method.name);
+            } else {
+                assert!(result.is_ok());
+            }
+        }
+    }
+}
+
+/// FNV-1a over the coordinates' bytes, little-endian.
+fn digest(set: &PointSet) -> u64 {
+    let bytes = set.points().iter().flat_map(|p| [p.x, p.y]).flat_map(f64::to_le_bytes);
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// Method, version, options, digest of 256 points with seed 1.
+///
+/// Printed by the test below and kept. A digest that changes means that users' patterns change:
+/// raise the method's version with it.
+type Golden = (&'static str, u32, &'static [(&'static str, &'static str)], u64);
+const GOLDEN: &[Golden] = &[
+    ("stochastic", 1, &[], 0x2a91_7d2d_2d62_cd10),
+    ("jittered", 1, &[], 0x57df_9610_05b1_0fbe),
+    ("jittered", 1, &[("distribution", "gaussian"), ("width", "0.5")], 0xe341_082c_c71f_0b64),
+    ("regular", 1, &[], 0xe998_254e_3a49_0485),
+    ("hexagonal", 1, &[], 0xd09f_ae10_f2c2_f528),
+    ("halton", 1, &[], 0x961a_89fc_6f48_ac61),
+    ("halton", 1, &[("scramble", "owen")], 0x6f1d_2a21_6e44_df29),
+    ("sobol", 1, &[], 0x3361_4760_9877_062d),
+    ("sobol", 1, &[("scramble", "xor")], 0x8fce_2bb3_5bc2_6d89),
+    ("sobol", 1, &[("scramble", "owen")], 0x9743_a69e_8055_119c),
+    ("r2", 1, &[], 0x7370_8453_ec40_401a),
+    ("r2", 1, &[("shift", "true")], 0xfc7b_fb1f_c305_d0d5),
+];
+
+#[test]
+fn value_stability() {
+    let mut changed = Vec::new();
+    for (name, version, options, want) in GOLDEN {
+        let method = find(name).expect("known");
+        assert_eq!(method.version, *version, "{name}");
+        let sampler = method.with_options(options.iter().copied()).expect("valid");
+        let points = sampler.sample(256, Seed::new(1), &Unobserved).expect("possible").points;
+        let got = digest(&points);
+        if got != *want {
+            changed.push(format!("({name:?}, {version}, &{options:?}, {got:#018x}),"));
+        }
+    }
+    assert!(changed.is_empty(), "changed:\n{}", changed.join("\n"));
+    for method in METHODS {
+        let listed = GOLDEN.iter().any(|golden| golden.0 == method.name);
+        assert!(listed, "{} has no digest", method.name);
+    }
+}
