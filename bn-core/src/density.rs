@@ -4,7 +4,7 @@ use std::fmt;
 
 /// The density of n points on the unit torus, and with it the units of distances and frequencies.
 ///
-/// - distances are reported in d_hex = √(2/(√3·n)), the largest smallest distance that n points
+/// - distances are reported in `d_hex` = √(2/(√3·n)), the largest smallest distance that n points
 ///   could have, that of a hexagonal lattice (thesis eq. 4.3, whose printed form is a slip);
 /// - frequencies are reported in √n/2, the Nyquist frequency of a square grid of n points (the
 ///   thesis calls it the hexagonal one).
@@ -29,7 +29,7 @@ impl Density {
         self.points
     }
 
-    /// d_hex = √(2/(√3·n)) in unit lengths: the spacing of the hexagonal lattice of this density.
+    /// `d_hex` = √(2/(√3·n)) in unit lengths: the spacing of the hexagonal lattice of this density.
     pub fn hexagonal_spacing(self) -> f64 {
         (2.0 / (3.0_f64.sqrt() * self.points)).sqrt()
     }
@@ -39,7 +39,7 @@ impl Density {
         self.points.sqrt() / 2.0
     }
 
-    /// A distance in unit lengths as one in d_hex.
+    /// A distance in unit lengths as one in `d_hex`.
     pub fn normalize_distance(self, distance: f64) -> NormalizedDistance {
         NormalizedDistance(distance / self.hexagonal_spacing())
     }
@@ -83,7 +83,7 @@ macro_rules! normalized {
 }
 
 normalized! {
-    /// A distance in units of d_hex = √(2/(√3·n)).
+    /// A distance in units of `d_hex` = √(2/(√3·n)).
     NormalizedDistance, hexagonal_spacing, to_unit_lengths, "The distance in unit lengths."
 }
 normalized! {

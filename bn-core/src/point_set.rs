@@ -53,9 +53,12 @@ pub struct PointSet {
 impl PointSet {
     /// The largest number of points in one set: indices are 32 bits wide and triangulations number
     /// two triangles a point.
-    pub const MAX_POINTS: usize = 1 << 31;
+    pub const MAX_POINTS: usize = 1 << 29;
 
-    /// The set of these points; rejects an empty list and any point outside [0, 1)².
+    /// The set of these points.
+    ///
+    /// # Errors
+    /// [`PointSetError`] if there is none, or one is outside [0, 1)²; it tells the first such point.
     pub fn new(points: Vec<DVec2>) -> Result<Self, PointSetError> {
         check_count(points.len())?;
         for (index, p) in points.iter().enumerate() {
@@ -69,7 +72,10 @@ impl PointSet {
         Ok(Self { points })
     }
 
-    /// The set of these points, each wrapped into [0, 1)²; rejects an empty list, NaN and infinity.
+    /// The set of these points, each wrapped into [0, 1)².
+    ///
+    /// # Errors
+    /// [`PointSetError`] if there is none, or one is not finite.
     pub fn wrapped(mut points: Vec<DVec2>) -> Result<Self, PointSetError> {
         check_count(points.len())?;
         for (index, p) in points.iter_mut().enumerate() {
@@ -146,7 +152,10 @@ pub struct Ensemble {
 }
 
 impl Ensemble {
-    /// The ensemble of these sets, in order; rejects an empty list.
+    /// The ensemble of these sets, in order.
+    ///
+    /// # Errors
+    /// [`EnsembleError::Empty`] if there is none.
     pub fn new(sets: Vec<PointSet>) -> Result<Self, EnsembleError> {
         if sets.is_empty() { Err(EnsembleError::Empty) } else { Ok(Self { sets }) }
     }

@@ -1,4 +1,0 @@
-//! placeholder
-/// Grid.
-#[derive(Debug)]
-pub struct CellGrid;
