@@ -35,14 +35,14 @@ pub enum PointSetError {
         y: f64,
     },
     /// More points than 32-bit indices can number.
-    #[error("{count} points are too many; a set holds at most 2³¹")]
+    #[error("{count} points are too many; a set holds at most 2²⁹")]
     TooMany {
         /// How many points were given.
         count: usize,
     },
 }
 
-/// One to 2³¹ points of the unit torus, each finite and in [0, 1)²; order and duplicates are kept.
+/// One to 2²⁹ points of the unit torus, each finite and in [0, 1)²; order and duplicates are kept.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
