@@ -83,7 +83,8 @@ impl CellGrid {
         let radius = (radius * m as f64 + SLACK_CELLS).min(m as f64);
         let own_row = cell_coordinate(p.y, m);
         for row in spans(own_row, radius.ceil() as usize, m).into_iter().flatten() {
-            let gap = if row == own_row { 0.0 } else { distance_to_row(y, row, m) - SLACK_CELLS };
+            let gap = if row == own_row { 0.0 } else { distance_to_row(y, row, m) };
+            let gap = (gap - SLACK_CELLS).max(0.0);
             if gap <= radius {
                 let half_chord = (radius * radius - gap * gap).sqrt();
                 let columns = spans_between(x - half_chord, x + half_chord, m);
