@@ -44,6 +44,11 @@ impl Coincidences {
         }
     }
 
+    /// More than the number of any point that shares a vertex.
+    pub fn index_bound(&self) -> usize {
+        self.membership.len()
+    }
+
     /// Number of points that share the vertex of another one.
     pub fn duplicate_count(&self) -> usize {
         self.groups.iter().map(|group| group.len().saturating_sub(1)).sum()

@@ -3,8 +3,20 @@
 use bn_core::DVec2;
 
 use super::Triangulation;
-use super::face::{Edge, FaceId, next};
+use super::face::{Edge as HalfEdge, FaceId, next};
 use super::mesh::Mesh;
+use crate::circle::{Circle, circumcircle};
+
+/// An edge between two points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// Where it starts; a representative where several points coincide.
+    pub from: usize,
+    /// Where it ends; perhaps a copy of the point where it starts.
+    pub to: usize,
+    /// From its start to its end.
+    pub vector: DVec2,
+}
 
 /// A face: three points, counter-clockwise, and their places.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +34,26 @@ impl Triangulation {
     /// All faces, in the order of their ids.
     pub fn faces(&self) -> Faces<'_> {
         Faces { mesh: &self.mesh, id: 0 }
+    }
+
+    /// All faces with their circles, in the order of their ids; a circle's centre lies in the frame
+    /// of [`Face::corners`].
+    pub fn circumcircles(&self) -> impl Iterator<Item = (Face, Circle)> {
+        self.faces().map(|face| (face, circumcircle(face.corners)))
+    }
+
+    /// All edges, each once, in either direction. There are three times as many as distinct points.
+    pub fn edges(&self) -> impl Iterator<Item = Edge> {
+        let faces = (0..).zip(&self.mesh.faces).filter(|(_, face)| face.is_alive());
+        faces.flat_map(|(id, face)| {
+            // Of two faces the one of lower id names the edge.
+            let owned = (0..3).filter(move |&c| id < face.twin[c].face());
+            owned.map(|c| Edge {
+                from: face.vertex[c] as usize,
+                to: face.vertex[next(c)] as usize,
+                vector: self.mesh.side(face, c, next(c)),
+            })
+        })
     }
 
     /// The face of this id.
@@ -54,6 +86,15 @@ impl Triangulation {
         Star { around: self.around(index) }
     }
 
+    /// For each face around point `index`, counter-clockwise, the place of the corner where the
+    /// point is and the circle of the face, both in the face's frame.
+    pub(crate) fn corners_around(&self, index: usize) -> impl Iterator<Item = (DVec2, Circle)> {
+        self.around(index).map(|e| {
+            let corners = self.mesh.corners(self.mesh.face(e.face()));
+            (corners[e.corner()], circumcircle(corners))
+        })
+    }
+
     fn around(&self, index: usize) -> Around<'_> {
         let first = self.mesh.outgoing[self.vertex(index) as usize];
         Around { mesh: &self.mesh, first, next: Some(first) }
@@ -72,15 +113,15 @@ impl Mesh {
 #[derive(Clone, Debug)]
 struct Around<'a> {
     mesh: &'a Mesh,
-    first: Edge,
-    next: Option<Edge>,
+    first: HalfEdge,
+    next: Option<HalfEdge>,
 }
 
 impl Iterator for Around<'_> {
-    type Item = Edge;
+    type Item = HalfEdge;
 
     #[inline]
-    fn next(&mut self) -> Option<Edge> {
+    fn next(&mut self) -> Option<HalfEdge> {
         let e = self.next?;
         self.next = Some(self.mesh.turn(e)).filter(|&e| e != self.first);
         Some(e)

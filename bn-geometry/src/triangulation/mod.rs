@@ -20,7 +20,7 @@ use crate::circle::{Circle, circumcircle};
 use crate::predicates::snap;
 
 pub use self::face::FaceId;
-pub use self::iter::{Face, Faces, Neighbors, Star};
+pub use self::iter::{Edge, Face, Faces, Neighbors, Star};
 
 /// The Delaunay triangulation of points on the unit torus.
 ///
@@ -174,7 +174,12 @@ impl Triangulation {
         self.mesh.faces.get(face.index()).is_some_and(FaceRecord::is_alive)
     }
 
-    /// One more than the largest index of a face: the length of a table of faces.
+    /// More than the index of any point: the length of a table of points.
+    pub fn index_bound(&self) -> usize {
+        self.mesh.position.len().max(self.coincidences.index_bound())
+    }
+
+    /// More than the index of any face: the length of a table of faces.
     pub fn face_bound(&self) -> usize {
         self.mesh.faces.len()
     }

@@ -118,19 +118,20 @@ pub fn copies(points: &[DVec2]) -> impl Iterator<Item = DVec2> {
     shifts.flat_map(move |shift| points.iter().map(move |&p| p + shift))
 }
 
-/// The faces as sets of places, in an order and a frame that depend on the point set alone.
+/// The faces as places of corners, in an order and in frames that depend on the point set alone.
 pub fn canonical_faces(triangulation: &Triangulation) -> Vec<[[u64; 2]; 3]> {
-    let mut faces: Vec<_> = triangulation
-        .faces()
-        .map(|face| {
-            let turned = |first: usize| {
-                let p = [0, 1, 2].map(|i| face.corners[(first + i) % 3]);
-                let home = torus::wrap_point(p[0]) - p[0];
-                p.map(|q| [(q.x + home.x + 0.0).to_bits(), (q.y + home.y + 0.0).to_bits()])
-            };
-            [turned(0), turned(1), turned(2)].into_iter().min().expect("three corners")
-        })
-        .collect();
+    let mut faces: Vec<_> = triangulation.faces().map(|f| canonical_face(f.corners)).collect();
     faces.sort_unstable();
     faces
+}
+
+/// The bits of a face's corners, from that corner and in that copy which make them least.
+pub fn canonical_face(corners: [DVec2; 3]) -> [[u64; 2]; 3] {
+    let turned = |first: usize| {
+        let p = [0, 1, 2].map(|i| corners[(first + i) % 3]);
+        let home = torus::wrap_point(p[0]) - p[0];
+        // Adding 0 makes −0 into 0.
+        p.map(|q| [(q.x + home.x + 0.0).to_bits(), (q.y + home.y + 0.0).to_bits()])
+    };
+    [turned(0), turned(1), turned(2)].into_iter().min().expect("three corners")
 }
