@@ -30,18 +30,22 @@ pub fn circumcircle([a, b, c]: [DVec2; 3]) -> Circle {
     let (u, v) = (b - a, c - a);
     let (u2, v2) = (u.length_squared(), v.length_squared());
     let area = u.x * v.y - u.y * v.x;
-    if area * area > 1e-6 * u2 * v2 {
-        through_origin(a, u * v2 - v * u2, area)
+    if area * area > 1e-6 * (u2 * v2) {
+        through_origin(a, u, v, area)
     } else {
         circumcircle_of_sliver([a, b, c])
     }
 }
 
-/// The circle through `origin`, origin + u and origin + v, given w = u·v² − v·u² and u × v.
+/// The circle through `origin`, origin + u and origin + v, given u × v.
 #[inline]
-fn through_origin(origin: DVec2, w: DVec2, cross: f64) -> Circle {
-    let to_center = DVec2::new(-w.y, w.x) * (0.5 / cross);
-    Circle { center: origin + to_center, radius_squared: to_center.length_squared() }
+fn through_origin(origin: DVec2, u: DVec2, v: DVec2, cross: f64) -> Circle {
+    let (u2, v2, w2) = (u.length_squared(), v.length_squared(), (v - u).length_squared());
+    let scale = 0.5 / cross;
+    let w = (u * v2 - v * u2) * scale;
+    // The product of the sides over four times the area, squared.
+    let radius_squared = u2 * v2 * w2 * (scale * scale);
+    Circle { center: origin + DVec2::new(-w.y, w.x), radius_squared }
 }
 
 #[cold]
@@ -55,8 +59,7 @@ fn circumcircle_of_sliver(corners: [DVec2; 3]) -> Circle {
     }
     let u = corners[(apex + 1) % 3] - corners[apex];
     let v = corners[(apex + 2) % 3] - corners[apex];
-    let w = u * v.length_squared() - v * u.length_squared();
-    through_origin(corners[apex], w, cross_exactly(u, v))
+    through_origin(corners[apex], u, v, cross_exactly(u, v))
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 //! [`Spacing`] measures distances between neighbours (`d_min`, `d_avg`). A [`Triangulation`] is the
 //! Delaunay triangulation on the torus, which points can join and leave; from it come the
 //! [`Coverage`] radius with the place farthest from all points, [`voronoi_cells`] with their areas,
-//! centroids and moments, and the [`bond_orientational_order`] Qⁿ. All of it is defined for every set
+//! centroids and moments, and the [`bond_orientational_order`] Qⁿ; [`EmptyCircles`] keeps its faces
+//! in order while it changes. All of it is defined for every set
 //! of at least one point: coincident and collinear points, lattices and points on the seam included.
 //!
 //! ```
@@ -30,7 +31,9 @@
 
 mod circle;
 mod coverage;
+mod empty_circles;
 mod hilbert;
+mod max_tree;
 mod order;
 mod predicates;
 mod spacing;
@@ -39,6 +42,7 @@ mod voronoi;
 
 pub use circle::Circle;
 pub use coverage::Coverage;
+pub use empty_circles::EmptyCircles;
 pub use order::{bond_orientational_order, local_bond_orientational_order};
 pub use spacing::Spacing;
 pub use triangulation::{Edge, Face, FaceId, Faces, Location, Neighbors, Star, Triangulation};

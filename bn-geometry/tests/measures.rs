@@ -2,10 +2,11 @@
 
 mod common;
 
-use bn_core::{DVec2, torus};
+use bn_core::{DVec2, Seed, torus};
 use bn_geometry::*;
 use common::*;
 use proptest::prelude::*;
+use rand::RngExt;
 
 /// Distances to the nearest other point, or own copy, over 5 × 5 copies.
 fn brute_force_spacing(points: &[DVec2]) -> Vec<f64> {
@@ -142,6 +143,35 @@ proptest! {
         };
         for (a, b) in all(&here).into_iter().zip(all(&there)) {
             prop_assert!((a - b).abs() < 1e-13, "{a} here, {b} there");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn empty_circles_follow_every_change(
+        points in point_family(), other in point_family(), seed in any::<u64>()
+    ) {
+        let mut rng = Seed::new(seed).stream(0);
+        let mut triangulation = Triangulation::new(&set(&points));
+        let mut holes = EmptyCircles::new(&triangulation);
+        let mut present: Vec<usize> = (0..points.len()).collect();
+        for (index, p) in other.iter().enumerate() {
+            triangulation.insert(100 + index, *p);
+            holes.update(&triangulation);
+            present.push(100 + index);
+            for _ in 0..rng.random_range(0..3) {
+                if let Some(gone) = present.pop() {
+                    triangulation.remove(gone);
+                    holes.update(&triangulation);
+                }
+            }
+            let coverage = Coverage::of(&triangulation);
+            let largest = holes.largest().map(|face| holes.radius_squared(face).sqrt());
+            prop_assert_eq!(largest, coverage.map(|coverage| coverage.radius));
+            prop_assert!(holes.largest().is_none_or(|face| triangulation.has_face(face)));
         }
     }
 }

@@ -12,6 +12,10 @@ pub const NONE: u32 = u32::MAX;
 pub struct FaceId(pub(crate) u32);
 
 impl FaceId {
+    pub(crate) fn new(index: usize) -> Self {
+        Self(index as u32)
+    }
+
     /// The id as an index into tables of one entry a face.
     #[inline]
     pub fn index(self) -> usize {
