@@ -13,7 +13,7 @@ pub enum PointSetError {
     #[error("the set holds no point; a set needs at least one")]
     Empty,
     /// A coordinate is NaN or infinite.
-    #[error("point {index} is ({x}, {y}); coordinates must be finite numbers")]
+    #[error("point {index} is ({x:?}, {y:?}); coordinates must be finite numbers")]
     NotFinite {
         /// Position of the point, from 0.
         index: usize,
@@ -24,7 +24,7 @@ pub enum PointSetError {
     },
     /// A coordinate lies outside [0, 1).
     #[error(
-        "point {index} is ({x}, {y}), outside the unit square [0, 1)²; scale or wrap the points"
+        "point {index} is ({x:?}, {y:?}), outside the unit square [0, 1)²; scale or wrap the points"
     )]
     OutOfDomain {
         /// Position of the point, from 0.

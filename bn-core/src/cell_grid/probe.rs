@@ -32,7 +32,7 @@ fn distance_squared(p: DVec2, q: DVec2) -> f64 {
     x * x + y * y
 }
 
-/// No point has this index: a set has at most 2³¹.
+/// No point has this index: a set has at most 2²⁹.
 const NOBODY: u32 = u32::MAX;
 
 /// Keeps the point of least squared distance, at equal ones that of least index.

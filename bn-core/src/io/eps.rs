@@ -9,7 +9,7 @@ use super::{ReadProblem, Source, WriteError};
 use crate::{Ensemble, PointSet};
 
 /// A comment of our own: the number of points, so that a file that was cut off is noticed.
-const COUNT: &[u8] = b"%points ";
+const COUNT: &[u8] = b"%points";
 
 /// Edge of the drawing in PostScript points.
 const EDGE: u32 = 512;
@@ -18,8 +18,8 @@ pub(super) fn read(source: &mut Source<'_>, mut gather: Gather) -> Result<Ensemb
     let mut lines = Lines::new(source);
     let mut count: Option<(String, Place)> = None;
     while let Some(line) = lines.next()? {
-        if let Some(stated) = line.strip_prefix(COUNT) {
-            count = Some((stated.trim_ascii().escape_ascii().to_string(), lines.place()));
+        if let Some(stated) = stated_count(line) {
+            count = Some((stated, lines.place()));
             continue;
         }
         let problem = match dot(line) {
@@ -39,6 +39,13 @@ pub(super) fn read(source: &mut Source<'_>, mut gather: Gather) -> Result<Ensemb
     }
     gather.end_set()?;
     Ok(gather.finish()?)
+}
+
+/// What follows the word `%points`.
+fn stated_count(line: &[u8]) -> Option<String> {
+    let stated = line.strip_prefix(COUNT)?;
+    let is_word = stated.first().is_none_or(u8::is_ascii_whitespace);
+    is_word.then(|| stated.trim_ascii().escape_ascii().to_string())
 }
 
 enum Line {

@@ -29,6 +29,11 @@ impl ReadError {
     pub fn problem(&self) -> &ReadProblem {
         &self.problem
     }
+
+    /// What is wrong, by value.
+    pub fn into_problem(self) -> ReadProblem {
+        self.problem
+    }
 }
 
 impl fmt::Display for ReadError {
@@ -98,10 +103,10 @@ pub enum ReadProblem {
     #[error("there is no point; a set needs at least one")]
     Empty,
     /// More points in a set than 32-bit indices can number.
-    #[error("there are more than 2³¹ points in a set; split it")]
+    #[error("there are more than 2²⁹ points in a set; split it")]
     TooMany,
     /// A coordinate is NaN or infinite.
-    #[error("the point ({x}, {y}) is nowhere; coordinates must be finite numbers")]
+    #[error("the point ({x:?}, {y:?}) is nowhere; coordinates must be finite numbers")]
     NotFinite {
         /// The abscissa.
         x: f64,
@@ -110,7 +115,7 @@ pub enum ReadProblem {
     },
     /// A coordinate lies outside [0, 1), and wrapping was not asked for.
     #[error(
-        "the point ({x}, {y}) lies outside the unit square [0, 1)²; scale the points, or ask for \
+        "the point ({x:?}, {y:?}) lies outside the unit square [0, 1)²; scale the points, or ask for \
          them to be wrapped round the torus"
     )]
     OutOfDomain {

@@ -25,6 +25,9 @@ impl Gather {
     pub(super) fn push(&mut self, x: f64, y: f64) -> Result<(), ReadProblem> {
         let p = DVec2::new(x, y);
         let p = if torus::contains(p) { p } else { self.mend(p)? };
+        if self.points.len() == PointSet::MAX_POINTS {
+            return Err(ReadProblem::TooMany);
+        }
         self.points.push(p);
         Ok(())
     }

@@ -41,14 +41,15 @@
 //!
 //! Text formats get the shortest decimals that read back as the same number, `.npy` 64-bit floats:
 //! what is written is read back bit for bit. `.rps` rounds to 32 bits, and a coordinate that rounds
-//! to 1 becomes 0; a set that came from an `.rps` file survives any conversion and back unchanged.
+//! to 1 becomes 0; a set that came from an `.rps` file, unless wrapped, survives any conversion and
+//! back unchanged.
 //!
 //! ```
 //! use bn_core::io::{self, Format, ReadOptions};
 //!
 //! let file = b"2\n0.25 0.5\n0.75 1.0\n";
 //! let error = io::read(Format::Txt, "a.txt", &file[..], ReadOptions::default()).unwrap_err();
-//! assert!(error.to_string().starts_with("a.txt, line 3: the point (0.75, 1) lies outside"));
+//! assert!(error.to_string().starts_with("a.txt, line 3: the point (0.75, 1.0) lies outside"));
 //!
 //! let ensemble = io::read(Format::Txt, "a.txt", &file[..], ReadOptions { wrap: true })?;
 //! let mut csv = Vec::new();
