@@ -4,7 +4,7 @@
 mod fuzz;
 
 use bn_core::io::{self, Format, ReadOptions};
-use bn_core::{Ensemble, Seed};
+use bn_core::{Ensemble, PointSet, Seed};
 
 use fuzz::allocation::{Counting, peak_of};
 use fuzz::cases::Cases;
@@ -30,7 +30,7 @@ fn check_round_trip(format: Format, ensemble: &Ensemble) {
     let back = read(format, &bytes, false).expect("what was written can be read");
     assert_eq!(&back, ensemble, "{format}");
     let signs = |ensemble: &Ensemble| -> Vec<bool> {
-        let points = ensemble.sets().iter().flat_map(|set| set.points());
+        let points = ensemble.sets().iter().flat_map(PointSet::points);
         points.flat_map(|p| [p.x.is_sign_negative(), p.y.is_sign_negative()]).collect()
     };
     assert_eq!(signs(&back), signs(ensemble), "{format}");
