@@ -63,7 +63,12 @@ pub(crate) fn check_count(method: &'static str, n: usize) -> Result<(), SampleEr
     if n == nearest {
         return Ok(());
     }
-    Err(SampleError::InvalidCount { method, n, need: "from 1 to 2³¹ points", nearest })
+    Err(SampleError::InvalidCount {
+        method,
+        n,
+        need: "at least 1 and at most as many as a set can hold",
+        nearest,
+    })
 }
 
 /// An empty list with room for `n` items, or the error that there is no such room.

@@ -22,6 +22,7 @@
 //! Invariant: never prints, reads no file, keeps no state between two samples; the same options,
 //! count and seed give the same bytes on any machine and number of threads.
 
+mod bucket_grid;
 mod digits;
 mod error;
 mod halton;
@@ -30,6 +31,7 @@ mod jittered;
 mod method;
 mod names;
 mod options;
+mod poisson_disk;
 mod r2;
 mod registry;
 mod regular;
@@ -44,6 +46,8 @@ pub use hexagonal::Hexagonal;
 pub use jittered::{Displacement, Jittered};
 pub use method::{CountRule, Method, PointOrder};
 pub use options::{DefaultValue, OptionError, OptionKind, OptionSpec, OptionValues};
+pub use poisson_disk::dart_throwing::DartThrowing;
+pub use poisson_disk::maximal::MaximalPoissonDisk;
 pub use r2::R2;
 pub use registry::{METHODS, UnknownMethod, find};
 pub use regular::Regular;

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::names::nearest_name;
+use crate::poisson_disk::{dart_throwing, maximal};
 use crate::{Method, halton, hexagonal, jittered, r2, regular, sobol, stochastic};
 
 /// Every method, in the order of the thesis's appendix B, then those that it doesn't show.
@@ -12,6 +13,8 @@ use crate::{Method, halton, hexagonal, jittered, r2, regular, sobol, stochastic}
 pub const METHODS: &[&Method] = &[
     &stochastic::METHOD,
     &jittered::METHOD,
+    &dart_throwing::METHOD,
+    &maximal::METHOD,
     &regular::METHOD,
     &hexagonal::METHOD,
     &halton::METHOD,
