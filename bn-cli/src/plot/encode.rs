@@ -26,7 +26,8 @@ pub(super) fn png(
     encoder.set_color(color);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::Balanced);
-    encoder.set_filter(Filter::Adaptive);
+    // Pages are flat areas and noise: unfiltered rows came out smaller and sooner than filtered ones.
+    encoder.set_filter(Filter::NoFilter);
     encoder.set_pixel_dims(notes.pixels_per_metre.map(|density| PixelDimensions {
         xppu: density,
         yppu: density,

@@ -33,15 +33,16 @@ pub struct ReportData {
     /// The points of one set, in [0, 1)².
     pub points: Vec<DVec2>,
     /// g over the two components of the distance; cells without a value (such as r = 0) are NaN.
+    /// Cells that hold less than about ten pairs show noise instead of structure.
     pub autocorrelation: Grid,
     /// P over the two components of the frequency. The DC mode, or the cell that holds only it,
     /// is NaN. One mode a cell, or means over blocks of modes.
     pub spectrum: Grid,
     /// Anisotropy in dB over the frequency.
     pub anisotropy: Curve,
-    /// g over the distance.
+    /// g over the distance; up to 8 `d_hex` are shown.
     pub rdf: Curve,
-    /// Ring means of P over the frequency.
+    /// Ring means of P over the frequency; up to 10·√n/2 are shown.
     pub radial_power: Curve,
     /// The table, from left to right.
     pub statistics: Vec<Statistic>,
