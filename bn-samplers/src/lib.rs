@@ -25,6 +25,8 @@
 mod bucket_grid;
 mod digits;
 mod error;
+mod farthest_point_strategy;
+mod farthest_points;
 mod halton;
 mod hexagonal;
 mod jittered;
@@ -41,6 +43,7 @@ mod sobol;
 mod stochastic;
 
 pub use error::SampleError;
+pub use farthest_point_strategy::FarthestPointStrategy;
 pub use halton::Halton;
 pub use hexagonal::Hexagonal;
 pub use jittered::{Displacement, Jittered};

@@ -4,7 +4,9 @@ use thiserror::Error;
 
 use crate::names::nearest_name;
 use crate::poisson_disk::{dart_throwing, maximal};
-use crate::{Method, halton, hexagonal, jittered, r2, regular, sobol, stochastic};
+use crate::{
+    Method, farthest_point_strategy, halton, hexagonal, jittered, r2, regular, sobol, stochastic,
+};
 
 /// Every method, in the order of the thesis's appendix B, then those that it doesn't show.
 ///
@@ -15,6 +17,7 @@ pub const METHODS: &[&Method] = &[
     &jittered::METHOD,
     &dart_throwing::METHOD,
     &maximal::METHOD,
+    &farthest_point_strategy::METHOD,
     &regular::METHOD,
     &hexagonal::METHOD,
     &halton::METHOD,
