@@ -36,7 +36,7 @@ impl Seed {
         Self { value: self.value, set }
     }
 
-    /// The stream of task `task`: 2⁶⁸ bytes that no other task, set or seed shares.
+    /// The stream of task `task`: 2⁷⁰ bytes that no other task, set or seed shares.
     pub fn stream(self, task: u32) -> StreamRng {
         let mut rng = ChaCha8Rng::seed_from_u64(self.value);
         rng.set_stream(u64::from(self.set) << 32 | u64::from(task));

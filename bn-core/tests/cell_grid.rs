@@ -198,6 +198,17 @@ fn lattices_and_lines_agree_with_brute_force() {
     }
 }
 
+/// Large sets are sorted in blocks of rows; here the last block is smaller.
+#[test]
+fn large_sets_are_in_their_cells() {
+    let mut rng = Seed::new(9).stream(0);
+    let points = (0..150_000).map(|_| DVec2::new(rng.random(), rng.random())).collect();
+    let set = PointSet::new(points).expect("valid");
+    for cells_per_side in [1, 2, 3, 101, 1000] {
+        check_cells(&set, &CellGrid::with_cells_per_side(&set, cells_per_side));
+    }
+}
+
 #[test]
 fn one_point_is_alone_unless_nobody_is_left_out() {
     let p = DVec2::new(0.9, 0.1);

@@ -1,6 +1,7 @@
 //! The bucket grid on the torus: the one neighbour search of the workbench.
 
 mod probe;
+mod sort;
 mod tree;
 mod walk;
 
@@ -12,6 +13,7 @@ use glam::DVec2;
 
 use crate::{PointSet, torus};
 use probe::{Nearest, NearestK, Probe, VeryNear, Within};
+use sort::Sorted;
 use tree::Tree;
 
 /// Points per cell that [`CellGrid::new`] aims at: with 2 a nearest neighbour lies in the 3×3 cells
@@ -89,19 +91,9 @@ impl CellGrid {
             "{cells_per_side} cells a side; a grid has 1 to {}",
             Self::MAX_CELLS_PER_SIDE
         );
-        let unsorted = set.points();
-        let cell_of: Vec<u32> =
-            unsorted.iter().map(|&p| cell_number(p, cells_per_side) as u32).collect();
-        let mut starts = vec![0_u32; cells_per_side * cells_per_side + 1];
-        for &c in &cell_of {
-            starts[c as usize + 1] += 1;
-        }
-        let squares: u64 = starts.iter().map(|&count| u64::from(count) * u64::from(count)).sum();
-        for c in 1..starts.len() {
-            starts[c] += starts[c - 1];
-        }
-        let (points, indices) = in_cell_order(unsorted, &cell_of, &starts);
-        let crowded = squares > CROWDED * unsorted.len() as u64;
+        let sorted = Sorted::new(set.points(), cells_per_side);
+        let crowded = sorted.sum_of_squares() > CROWDED * set.len() as u64;
+        let Sorted { starts, points, indices, .. } = sorted;
         Self { cells_per_side, starts, points, indices, crowded, tree: OnceLock::new() }
     }
 
@@ -272,18 +264,4 @@ fn cell_coordinate(x: f64, cells_per_side: usize) -> usize {
 
 fn cell_number(p: DVec2, cells_per_side: usize) -> usize {
     cell_coordinate(p.y, cells_per_side) * cells_per_side + cell_coordinate(p.x, cells_per_side)
-}
-
-/// The second half of a counting sort: stable, hence by index within a cell.
-fn in_cell_order(points: &[DVec2], cell_of: &[u32], starts: &[u32]) -> (Vec<DVec2>, Vec<u32>) {
-    let mut next = starts.to_vec();
-    let mut sorted = vec![DVec2::ZERO; points.len()];
-    let mut indices = vec![0; points.len()];
-    for (index, (&p, &c)) in points.iter().zip(cell_of).enumerate() {
-        let slot = &mut next[c as usize];
-        sorted[*slot as usize] = p;
-        indices[*slot as usize] = index as u32;
-        *slot += 1;
-    }
-    (sorted, indices)
 }
