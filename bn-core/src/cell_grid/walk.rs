@@ -30,7 +30,9 @@ impl CellGrid {
         // The own cell with its neighbours holds the answer most of the time.
         let columns = spans(ix, 1, m);
         self.show_spans(iy, &columns, probe)?;
-        for (row, clear) in [((iy + 1) % m, 1.0 - y), ((iy + m - 1) % m, y)] {
+        let above = if iy + 1 == m { 0 } else { iy + 1 };
+        let below = if iy == 0 { m - 1 } else { iy - 1 };
+        for (row, clear) in [(above, 1.0 - y), (below, y)] {
             if !out_of_reach(clear, probe) {
                 self.show_spans(row, &columns, probe)?;
             }
