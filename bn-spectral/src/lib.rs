@@ -27,19 +27,33 @@
 //!
 //! Invariant: never sees a triangulation, never prints, knows no number of the thesis.
 
+mod autocorrelation;
 mod bessel;
 mod hankel;
 mod measures;
+mod nufft;
+mod periodogram;
+mod power_image;
+mod radial;
 mod rdf;
 mod spectra;
 mod window;
 
+pub use autocorrelation::Autocorrelation;
 pub use bessel::{j0, j0_slice, j1, j1_slice, jinc, jinc_slice};
 pub use hankel::{BesselSums, BesselSumsScratch, HankelPlan};
 pub use measures::{
     PowerToRdf, QUIET_POWER, RdfToPower, RingMeans, SpectrumError, WindowedSpectrum,
     effective_nyquist, oscillation,
 };
+pub use nufft::{
+    FullPlane, HalfPlane, ModeColumns, Nufft, NufftError, NufftOptions, Real, direct_complex_modes,
+    direct_complex_sums, direct_modes, direct_sums,
+};
+pub use periodogram::{Periodogram, PeriodogramOptions};
+pub use power_image::PowerImage;
+pub use radial::{RadialPower, power_below};
+pub use rustfft::num_complex::Complex;
 pub use rdf::PairHistogram;
 pub use spectra::{
     JitteredGrid, LatticeRing, hexagonal_lattice_rings, highest_step, square_lattice_rings, step_rdf,

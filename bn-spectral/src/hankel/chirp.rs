@@ -8,14 +8,18 @@ use rustfft::{Fft, FftPlanner};
 
 type C64 = Complex<f64>;
 
-/// e^{iπαk²}, with α k² reduced modulo 2 without loss: a fused product gives its rounding error.
-fn chirp(alpha: f64, k: f64) -> C64 {
-    let square = k * k;
-    let product = alpha * square;
-    let lost = alpha.mul_add(square, -product);
-    let turns = (product - 2.0 * (product / 2.0).round()) + lost;
-    let (sin, cos) = libm::sincos(std::f64::consts::PI * turns);
-    C64::new(cos, sin)
+/// e^{iπαk²} for k = 0, 1, … below `count`, with αk² reduced modulo 2 without loss: a fused product
+/// gives its rounding error.
+pub fn chirps(alpha: f64, count: usize) -> Vec<C64> {
+    let chirp = |k: usize| {
+        let square = k as f64 * k as f64;
+        let product = alpha * square;
+        let lost = alpha.mul_add(square, -product);
+        let turns = (product - 2.0 * (product / 2.0).round()) + lost;
+        let (sin, cos) = libm::sincos(std::f64::consts::PI * turns);
+        C64::new(cos, sin)
+    };
+    (0..count).map(chirp).collect()
 }
 
 /// Sums over k in `first_input..… + inputs` for j in `first_output..… + outputs`, as
@@ -33,27 +37,27 @@ pub struct ChirpPlan {
 }
 
 impl ChirpPlan {
+    /// The plan for the α whose [`chirps`] are given, up to the largest index among inputs and
+    /// outputs.
     pub fn new(
-        alpha: f64,
+        chirps: &[C64],
         (first_input, inputs): (usize, usize),
         (first_output, outputs): (usize, usize),
         planner: &mut FftPlanner<f64>,
     ) -> Self {
         let length = fast_length(inputs + outputs - 1);
         let mut filter = vec![C64::zero(); length];
-        // Difference d − (inputs − 1) + first_output − first_input stands at d, so that output j of
-        // the convolution, counted from first_output, is found at inputs − 1 + j.
-        let offset = first_output as f64 - first_input as f64 - (inputs - 1) as f64;
+        // The difference that stands at d is first_output + d − last_input, so that the output
+        // j of the convolution, counted from first_output, is found at inputs − 1 + j.
+        let last_input = first_input + inputs - 1;
         for (d, value) in filter.iter_mut().enumerate().take(inputs + outputs - 1) {
-            *value = chirp(alpha, d as f64 + offset).conj() / length as f64;
+            *value = chirps[(first_output + d).abs_diff(last_input)].conj() / length as f64;
         }
         let forward = planner.plan_fft_forward(length);
         let inverse = planner.plan_fft_inverse(length);
         forward.process(&mut filter);
-        let chirps = |first: usize, count: usize| {
-            (first..first + count).map(|k| chirp(alpha, k as f64)).collect()
-        };
-        let (inputs, outputs) = (chirps(first_input, inputs), chirps(first_output, outputs));
+        let inputs = chirps[first_input..first_input + inputs].to_vec();
+        let outputs = chirps[first_output..first_output + outputs].to_vec();
         Self { inputs, outputs, filter, forward, inverse }
     }
 
@@ -117,7 +121,7 @@ mod tests {
     #[test]
     fn sums_are_those_of_the_definition() {
         let (alpha, inputs, outputs) = (0.017_3, (3, 50), (41, 30));
-        let plan = ChirpPlan::new(alpha, inputs, outputs, &mut FftPlanner::new());
+        let plan = ChirpPlan::new(&chirps(alpha, 71), inputs, outputs, &mut FftPlanner::new());
         let g: Vec<f64> = (0..50).map(|i| f64::from(i * 37 % 11) - 5.0).collect();
         let mut buffer = vec![C64::zero(); plan.length()];
         let mut scratch = vec![C64::zero(); plan.scratch_length()];

@@ -6,7 +6,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 use rustfft::num_traits::Zero;
 
-use super::chirp::ChirpPlan;
+use super::chirp::{ChirpPlan, chirps};
 use crate::j0_slice;
 
 type C64 = Complex<f64>;
@@ -50,7 +50,7 @@ struct Block {
     outputs: Range<usize>,
     first_radius: usize,
     chirp: Option<ChirpPlan>,
-    /// Of the terms, at the block's first radius and frequency.
+    /// [`expansion`] at the block's first radius and frequency.
     coefficients: [C64; TERMS],
 }
 
@@ -68,27 +68,40 @@ impl BesselSums {
     /// The plan for `radii` × `frequencies` and α = Δr·Δu.
     ///
     /// # Panics
-    /// If a count is 0 or above 2²⁶, or α is not a positive number.
+    /// If a count is 0 or above 2²⁶, α is not a positive number, or the largest α i j exceeds 2⁵⁰.
     pub fn new(radii: usize, frequencies: usize, alpha: f64) -> Self {
         let counts = 1..=1 << 26;
         assert!(
             counts.contains(&radii) && counts.contains(&frequencies),
             "{radii} radii and {frequencies} frequencies: both must be in 1..=2^26"
         );
-        assert!(alpha > 0.0 && alpha.is_finite(), "α = {alpha} is not a positive number");
+        let turns = alpha * radii as f64 * frequencies as f64;
+        assert!(alpha > 0.0 && turns < f64::from(1 << 30) * f64::from(1 << 20), "α = {alpha}");
         // The least product i·j that the expansion serves.
         let product = (ASYMPTOTIC / (std::f64::consts::TAU * alpha)).ceil();
         let product = if product < 1e15 { product as usize } else { 1_000_000_000_000_000 };
-        let mut planner = FftPlanner::new();
         // Up to here every i·j is below GROWTH·product.
         let direct = (GROWTH * product / radii).clamp(1, frequencies);
-        let mut blocks = vec![Block::direct(0..direct, radii)];
+        let needed = if direct < frequencies { radii.max(frequencies) } else { 0 };
+        let (chirps, mut planner) = (chirps(alpha, needed), FftPlanner::new());
+        let mut blocks = vec![Block {
+            outputs: 0..direct,
+            first_radius: radii,
+            chirp: None,
+            coefficients: [C64::zero(); TERMS],
+        }];
         while let start = blocks[blocks.len() - 1].outputs.end
             && start < frequencies
         {
             let outputs = start..(GROWTH * start).min(frequencies);
             let first_radius = product.div_ceil(start);
-            blocks.push(Block::new(outputs, first_radius, radii, alpha, &mut planner));
+            let chirp = (first_radius < radii).then(|| {
+                let inputs = (first_radius, radii - first_radius);
+                ChirpPlan::new(&chirps, inputs, (outputs.start, outputs.len()), &mut planner)
+            });
+            let x = std::f64::consts::TAU * alpha * first_radius as f64 * start as f64;
+            let first_radius = first_radius.min(radii);
+            blocks.push(Block { outputs, first_radius, chirp, coefficients: expansion(x) });
         }
         let longest = |b: &Block| (b.first_radius - 1) * (b.outputs.end - 1) + 1;
         let length = blocks.iter().map(longest).max().unwrap_or(0);
@@ -173,36 +186,19 @@ fn bessel_multiples(step: f64, first: usize, values: &mut [f64]) {
     j0_slice(&x[..values.len()], values);
 }
 
+/// Hankel's expansion √(2/πx) e^{−iπ/4} Σ cₘ/xᵐ, cₘ = (−i)ᵐ 1²·3²…(2m − 1)²/(m! 8ᵐ), without e^{ix}.
+fn expansion(x: f64) -> [C64; TERMS] {
+    let envelope = (std::f64::consts::FRAC_2_PI / x).sqrt();
+    let mut term = C64::from_polar(envelope, -std::f64::consts::FRAC_PI_4);
+    std::array::from_fn(|m| {
+        let this = term;
+        let odd = (2 * m + 1) as f64;
+        term *= C64::new(0.0, -odd * odd / (8.0 * (m + 1) as f64 * x));
+        this
+    })
+}
+
 impl Block {
-    fn direct(outputs: Range<usize>, radii: usize) -> Self {
-        Self { outputs, first_radius: radii, chirp: None, coefficients: [C64::zero(); TERMS] }
-    }
-
-    fn new(
-        outputs: Range<usize>,
-        first_radius: usize,
-        radii: usize,
-        alpha: f64,
-        planner: &mut FftPlanner<f64>,
-    ) -> Self {
-        if first_radius >= radii {
-            return Self::direct(outputs, radii);
-        }
-        let inputs = (first_radius, radii - first_radius);
-        let chirp = ChirpPlan::new(alpha, inputs, (outputs.start, outputs.len()), planner);
-        // Term m of √(2/πx) e^{i(x − π/4)} Σ i^m a_m/x^m, a_m = (−1)^m 1²·3²…(2m − 1)²/(m! 8^m).
-        let x = std::f64::consts::TAU * alpha * first_radius as f64 * outputs.start as f64;
-        let mut term =
-            C64::from_polar((std::f64::consts::FRAC_2_PI / x).sqrt(), -std::f64::consts::FRAC_PI_4);
-        let coefficients = std::array::from_fn(|m| {
-            let this = term;
-            let odd = (2 * m + 1) as f64;
-            term *= C64::new(0.0, -odd * odd / (8.0 * (m + 1) as f64 * x));
-            this
-        });
-        Self { outputs, first_radius, chirp: Some(chirp), coefficients }
-    }
-
     /// Adds the sums over i ≥ `first_radius`.
     fn add_far_sums(&self, c: &[f64], sums: &mut [f64], scratch: &mut BesselSumsScratch) {
         let Some(chirp) = &self.chirp else { return };

@@ -57,12 +57,17 @@ impl WindowedSpectrum {
             return Err(SpectrumError::MixedSizes { first: points, other: set.len() });
         }
         let bins = RdfToPower::default_bins(points);
-        let plan = RdfToPower::new(points, bins);
-        let spectrum = |set: &PointSet| {
-            let power = plan.power(&PairHistogram::new(set, bins).rdf());
-            Self { density: plan.density(), power: power.map(|_, p| p.abs()) }
+        let (plan, rdfs) = rayon::join(
+            || RdfToPower::new(points, bins),
+            || -> Vec<Curve> {
+                sets.par_iter().map(|set| PairHistogram::new(set, bins).rdf()).collect()
+            },
+        );
+        let spectrum = |rdf: &Curve| {
+            let power = plan.power(rdf).map(|_, p| p.abs());
+            Self { density: plan.density(), power }
         };
-        Ok(sets.par_iter().map(spectrum).collect())
+        Ok(rdfs.par_iter().map(spectrum).collect())
     }
 
     /// The mean of spectra, of which each counts the same.

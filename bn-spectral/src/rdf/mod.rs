@@ -21,21 +21,14 @@ const PARALLEL_PAIRS: u64 = 1 << 21;
 /// Every unordered pair of points with distance r < range is counted in bin ⌊r·bins/range⌋. The
 /// counts are exact for the distances as they are in double precision, and the same on any number
 /// of threads.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PairHistogram {
-    points: u64,
+    points: usize,
     /// Bins per unit length; an integer where range is ½.
-    bins_per_unit: BinsPerUnit,
+    bins_per_unit: f64,
     counts: Vec<u64>,
 }
-
-/// Finite and positive.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
-struct BinsPerUnit(f64);
-
-impl Eq for BinsPerUnit {}
 
 impl PairHistogram {
     /// The largest number of bins.
@@ -73,12 +66,12 @@ impl PairHistogram {
         } else {
             count_near(&CellGrid::with_cells_per_side(set, cells), new)
         };
-        Self { points: n as u64, bins_per_unit: BinsPerUnit(bins_per_unit), counts }
+        Self { points: n, bins_per_unit, counts }
     }
 
     /// Number of points n of the set.
     pub fn points(&self) -> usize {
-        self.points as usize
+        self.points
     }
 
     /// Number of unordered pairs by bin.
@@ -88,7 +81,7 @@ impl PairHistogram {
 
     /// Width Δr of a bin in unit lengths; bin i holds distances in [i·Δr, (i + 1)·Δr).
     pub fn bin_width(&self) -> f64 {
-        1.0 / self.bins_per_unit.0
+        1.0 / self.bins_per_unit
     }
 
     /// The radial distribution function g(r): the count of each bin over that expected of

@@ -1,0 +1,154 @@
+//! What a plan computes once, the scratch space of its threads, and how work is dealt to them.
+
+use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use rayon::prelude::*;
+use rustfft::num_complex::Complex;
+use rustfft::Fft;
+
+use super::design::Design;
+use super::real::Real;
+use super::simd::Simd;
+use super::strip::{Packing, Strips};
+use super::taps::Taps;
+
+/// The constant part of a plan.
+pub(super) struct Tables<T> {
+    pub(super) design: Design,
+    pub(super) max_frequency: usize,
+    pub(super) taps: Taps<T>,
+    pub(super) simd: Simd,
+    /// 1/φ̂(k/N) for k = −K … K.
+    pub(super) deconvolution: Vec<T>,
+    /// e^(−2πi…) and e^(+2πi…) over the grid's side.
+    pub(super) forward: Arc<dyn Fft<T>>,
+    pub(super) inverse: Arc<dyn Fft<T>>,
+    paired: Strips,
+    single: Strips,
+}
+
+impl<T: Real> Tables<T> {
+    pub(super) fn new(design: Design, max_frequency: usize, portable: bool) -> Self {
+        let (grid, kernel) = (design.grid, design.kernel);
+        let error = design.polynomial_error.max(0.2 * T::EPSILON);
+        let polynomials = kernel.polynomials(design.taps, error);
+        let polynomials = polynomials.into_iter().map(T::narrow).collect();
+        let transform = |k: usize| kernel.transform(k as f64 / grid as f64);
+        let limit = max_frequency as i64;
+        let deconvolution = (-limit..=limit)
+            .map(|k| T::narrow(1.0 / transform(k.unsigned_abs() as usize)))
+            .collect();
+        let [forward, inverse] = T::plan_ffts(grid, portable);
+        let simd = if portable { Simd::portable() } else { Simd::detect() };
+        Self {
+            max_frequency,
+            taps: Taps::new(kernel.width, design.taps, polynomials, simd),
+            simd,
+            deconvolution,
+            forward,
+            inverse,
+            paired: Strips::new::<T>(grid, Packing::Paired),
+            single: Strips::new::<T>(grid, Packing::Single),
+            design,
+        }
+    }
+
+    pub(super) fn grid(&self) -> usize {
+        self.design.grid
+    }
+
+    pub(super) fn strips(&self, packing: Packing) -> &Strips {
+        match packing {
+            Packing::Single => &self.single,
+            Packing::Paired => &self.paired,
+        }
+    }
+
+    /// The grid column of the first mode column: kx = −K, or 0 for real data.
+    pub(super) fn first_column(&self, packing: Packing) -> usize {
+        match packing {
+            Packing::Single => self.grid() - self.max_frequency,
+            Packing::Paired => 0,
+        }
+    }
+
+    /// The grid columns of all modes, counted on beyond the grid's side.
+    pub(super) fn columns(&self, packing: Packing) -> Range<usize> {
+        let first = self.first_column(packing);
+        match packing {
+            Packing::Single => first..first + 2 * self.max_frequency + 1,
+            Packing::Paired => first..first + self.max_frequency + 1,
+        }
+    }
+
+    pub(super) fn width(&self) -> usize {
+        self.design.kernel.width
+    }
+}
+
+/// Scratch space of one thread.
+#[derive(Debug)]
+pub(super) struct Worker<T> {
+    /// The cells of a strip.
+    pub(super) strip: Vec<Complex<T>>,
+    /// One column of the grid.
+    pub(super) line: Vec<Complex<T>>,
+    /// One column of modes, ky = −K … K.
+    pub(super) modes: Vec<Complex<T>>,
+    /// For the FFT.
+    pub(super) scratch: Vec<Complex<T>>,
+}
+
+/// The scratch spaces of all threads, kept between evaluations.
+#[derive(Debug, Default)]
+pub(super) struct Workers<T> {
+    workers: Vec<Mutex<Worker<T>>>,
+    parallel: bool,
+}
+
+impl<T: Real> Workers<T> {
+    /// Room for the threads of the current pool, or for one.
+    pub(super) fn prepare(&mut self, tables: &Tables<T>, parallel: bool) {
+        let threads = if parallel { rayon::current_num_threads() } else { 1 };
+        self.parallel = threads > 1;
+        let zero = Complex::new(T::default(), T::default());
+        let scratch = |fft: &Arc<dyn Fft<T>>| fft.get_inplace_scratch_len();
+        while self.workers.len() < threads {
+            let height = tables.paired.height.max(tables.single.height);
+            self.workers.push(Mutex::new(Worker {
+                strip: vec![zero; height * tables.paired.stride()],
+                line: vec![zero; tables.grid()],
+                modes: vec![zero; 2 * tables.max_frequency + 1],
+                scratch: vec![zero; scratch(&tables.forward).max(scratch(&tables.inverse))],
+            }));
+        }
+    }
+
+    /// The scratch space of the calling thread.
+    fn own(&self) -> MutexGuard<'_, Worker<T>> {
+        let thread = rayon::current_thread_index().unwrap_or(0);
+        // Uncontended: no two threads of one pool share an index, and no work is stolen inside.
+        self.workers[thread % self.workers.len()].lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Calls `task(index, item, worker)` for every item, on all threads. Each result depends on
+    /// its own item alone, so the number of threads doesn't matter.
+    pub(super) fn each<X: Send>(
+        &self,
+        items: Vec<X>,
+        task: impl Fn(usize, X, &mut Worker<T>) + Sync,
+    ) {
+        if self.parallel {
+            items
+                .into_par_iter()
+                .enumerate()
+                .for_each(|(index, item)| task(index, item, &mut self.own()));
+        } else {
+            let mut worker = self.own();
+            for (index, item) in items.into_iter().enumerate() {
+                task(index, item, &mut worker);
+            }
+        }
+    }
+}

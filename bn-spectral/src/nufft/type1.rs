@@ -1,0 +1,134 @@
+//! Type 1, points → modes: spread, transform the rows strip by strip, then the wanted columns.
+
+use std::ops::Range;
+
+use rustfft::num_complex::Complex;
+
+use super::located::SortedPoints;
+use super::real::Real;
+use super::strip::{Packing, Strip};
+use super::tables::{Tables, Workers};
+use super::taps::{Spread, Strengths};
+use super::transpose::ToColumns;
+
+/// Which columns kx a spectrum holds.
+#[derive(Clone, Debug)]
+pub(super) struct Columns {
+    pub(super) packing: Packing,
+    /// Real strengths: kx, from 0. Complex ones: kx + K.
+    pub(super) range: Range<usize>,
+}
+
+impl Columns {
+    /// kx of column `column` of the range.
+    pub(super) fn frequency(&self, column: usize, max_frequency: usize) -> i64 {
+        match self.packing {
+            Packing::Single => column as i64 - max_frequency as i64,
+            Packing::Paired => column as i64,
+        }
+    }
+}
+
+/// Rows of the grid after their transform: `spectrum` holds, strip by strip, column by column,
+/// the strip's grid rows; twice their value for real strengths.
+pub(super) fn transform_rows<T: Real>(
+    tables: &Tables<T>,
+    points: &SortedPoints<T>,
+    strengths: Strengths<'_>,
+    columns: &Columns,
+    spectrum: &mut Vec<Complex<T>>,
+    workers: &Workers<T>,
+) {
+    let strips = tables.strips(columns.packing);
+    let first = columns.range.start + tables.first_column(columns.packing);
+    let wanted = first..first + columns.range.len();
+    let size = wanted.len() * strips.packing.grid_rows_each() * strips.height;
+    spectrum.resize(wanted.len() * tables.grid(), Complex::new(T::default(), T::default()));
+    workers.each(spectrum.chunks_mut(size).collect(), |index, chunk: &mut [_], worker| {
+        let mut strip = Strip::new(strips, index, &mut worker.strip);
+        strip.clear();
+        let (before, shift) = strips.reaching(index, tables.width());
+        let own = strips.grid_rows_of(index);
+        for (rows, shift) in [(before, shift), (own, 0)] {
+            let (taps, points) = (&tables.taps, points.in_rows(rows));
+            T::spread(Spread { taps, points, shift, strengths, strip: &mut strip });
+        }
+        strip.fold();
+        for row in strip.rows_mut() {
+            tables.forward.process_with_scratch(row, &mut worker.scratch);
+        }
+        let (strip, columns) = (&strip, wanted.clone());
+        T::to_columns(tables.simd, ToColumns { strip, columns, out: chunk });
+    });
+}
+
+/// A transformed column of the grid, about to become modes.
+pub(super) struct GridColumn<'a, T> {
+    line: &'a [Complex<T>],
+    /// 1/φ̂(ky) for ky = −K … K.
+    along: &'a [T],
+    /// 1/φ̂(kx) and what else there is.
+    across: T,
+}
+
+impl<T: Real> GridColumn<'_, T> {
+    /// Writes the modes ky = −K … K.
+    pub(super) fn write_to(&self, modes: &mut [Complex<T>]) {
+        let limit = self.along.len() / 2;
+        let scale = |out: &mut [Complex<T>], line: &[Complex<T>], along: &[T]| {
+            for ((o, &value), &d) in out.iter_mut().zip(line).zip(along) {
+                let factor = d * self.across;
+                *o = Complex::new(value.re * factor, value.im * factor);
+            }
+        };
+        let (negative, positive) = modes.split_at_mut(limit);
+        let (d_negative, d_positive) = self.along.split_at(limit);
+        scale(negative, &self.line[self.line.len() - limit..], d_negative);
+        scale(positive, self.line, d_positive);
+    }
+}
+
+/// Transforms the columns `wanted` of `spectrum` and hands each to `take` with its number, its
+/// output, and room for its modes.
+pub(super) fn transform_columns<T: Real, O: Send>(
+    tables: &Tables<T>,
+    columns: &Columns,
+    spectrum: &[Complex<T>],
+    wanted: Range<usize>,
+    outputs: Vec<O>,
+    workers: &Workers<T>,
+    take: impl Fn(usize, O, &GridColumn<'_, T>, &mut [Complex<T>]) + Sync,
+) {
+    workers.each(outputs, |number, output, worker| {
+        let column = wanted.start + number;
+        let index = column - columns.range.start;
+        let line = &mut worker.line[..];
+        collect_column(tables, columns, spectrum, index, line);
+        // The table of 1/φ̂ is centred on k = 0.
+        let across = match columns.packing {
+            Packing::Single => tables.deconvolution[column],
+            Packing::Paired => {
+                tables.deconvolution[column + tables.max_frequency] * T::narrow(0.5)
+            }
+        };
+        tables.forward.process_with_scratch(line, &mut worker.scratch);
+        let grid_column = GridColumn { line, along: &tables.deconvolution, across };
+        take(column, output, &grid_column, &mut worker.modes);
+    });
+}
+
+/// Column `index` of the spectrum, from all strips.
+fn collect_column<T: Real>(
+    tables: &Tables<T>,
+    columns: &Columns,
+    spectrum: &[Complex<T>],
+    index: usize,
+    line: &mut [Complex<T>],
+) {
+    let strips = tables.strips(columns.packing);
+    let rows = strips.packing.grid_rows_each() * strips.height;
+    let parts = spectrum.chunks(columns.range.len() * rows);
+    for (part, out) in parts.zip(line.chunks_mut(rows)) {
+        out.copy_from_slice(&part[index * out.len()..][..out.len()]);
+    }
+}
