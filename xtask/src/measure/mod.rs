@@ -1,0 +1,138 @@
+//! Point sets and their statistics, each made and measured once a run whatever tables ask for it.
+
+mod curves;
+mod store;
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::time::Instant;
+
+use bn_cli::analysis::{Analysis, Estimate};
+use bn_cli::{Failure, Outcome};
+use bn_core::{PointSet, Seed, Unobserved};
+use bn_samplers::{Method, SampleError};
+use rayon::prelude::*;
+
+use crate::thesis::{Quantity, RowSpec};
+pub(crate) use store::Store;
+
+/// How many points, in how many sets, from which seed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plan {
+    pub(crate) n: usize,
+    pub(crate) sets: u32,
+    pub(crate) seed: u64,
+}
+
+/// Makes and measures the rows' point sets.
+pub(crate) struct Workbench {
+    plan: Plan,
+    /// What is measured of every row: what the tables of this run ask for.
+    quantities: Vec<Quantity>,
+    /// Where point sets are kept, if they are.
+    store: Option<Store>,
+    /// Where the curves of each row are written, if they are.
+    curves: Option<PathBuf>,
+    measured: RefCell<BTreeMap<String, Rc<Measured>>>,
+}
+
+/// What came of a row.
+#[derive(Clone, Debug)]
+pub(crate) enum Measured {
+    /// The registry has no such method.
+    NotYet,
+    /// The method gave no points.
+    Failed(String),
+    /// The statistics, where they can be measured.
+    Values(BTreeMap<Quantity, Option<Estimate>>),
+}
+
+impl Workbench {
+    /// A workbench that measures `quantities`; it keeps nothing on disk.
+    pub(crate) fn new(plan: Plan, quantities: Vec<Quantity>) -> Self {
+        Self { plan, quantities, store: None, curves: None, measured: RefCell::default() }
+    }
+
+    /// The same, keeping point sets in `store` and writing each row's curves into `curves`.
+    pub(crate) fn keeping(self, store: Store, curves: PathBuf) -> Self {
+        Self { store: Some(store), curves: Some(curves), ..self }
+    }
+
+    pub(crate) fn plan(&self) -> Plan {
+        self.plan
+    }
+
+    /// The row's statistics; measured when first asked for.
+    pub(crate) fn measure(&self, row: &RowSpec) -> Outcome<Rc<Measured>> {
+        if let Some(measured) = self.measured.borrow().get(&row.method) {
+            return Ok(Rc::clone(measured));
+        }
+        let measured = Rc::new(match row.method() {
+            None => Measured::NotYet,
+            Some(method) => self.measure_method(row, method)?,
+        });
+        self.measured.borrow_mut().insert(row.method.clone(), Rc::clone(&measured));
+        Ok(measured)
+    }
+
+    fn measure_method(&self, row: &RowSpec, method: &'static Method) -> Outcome<Measured> {
+        let start = Instant::now();
+        let (sets, made) = match self.sets(row, method)? {
+            Ok(sets) => sets,
+            Err(error) => return Ok(Measured::Failed(error.to_string())),
+        };
+        if sets.iter().any(|set| set.len() != sets[0].len()) {
+            return Ok(Measured::Failed("its sets differ in size".to_owned()));
+        }
+        let making = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let analysis = Analysis::of(&sets);
+        let values =
+            self.quantities.iter().map(|&q| (q, analysis.estimate(q.statistic()))).collect();
+        let spectral = self.quantities.iter().any(|quantity| quantity.is_spectral());
+        if let Some(folder) = self.curves.as_ref().filter(|_| spectral) {
+            curves::write(folder, &row.method, &analysis)?;
+        }
+        let measuring = start.elapsed().as_secs_f64();
+        let count = sets.len();
+        eprintln!(
+            "{:<24} {made} of {count} sets made in {making:.2} s, measured in {measuring:.2} s",
+            row.method
+        );
+        Ok(Measured::Values(values))
+    }
+
+    /// The row's sets and how many of them had to be made. One is enough where no seed matters.
+    fn sets(
+        &self,
+        row: &RowSpec,
+        method: &'static Method,
+    ) -> Outcome<Result<(Vec<PointSet>, usize), SampleError>> {
+        let options = row.options.iter().map(|(name, value)| (&**name, &**value));
+        let sampler = method.with_options(options).map_err(Failure::usage)?;
+        let (plan, store) = (self.plan, self.store.as_ref());
+        let sets = if method.seeded { plan.sets } else { 1 };
+        let one = |set: u32| {
+            let place = store.map(|store| store.place(method, row, plan, set));
+            if let Some(points) = place.as_ref().and_then(store::Place::read) {
+                return Ok(Ok((points, 0)));
+            }
+            let seed = Seed::new(plan.seed).for_set(set);
+            let points = match sampler.sample(plan.n, seed, &Unobserved) {
+                Ok(sample) => sample.points,
+                Err(error) => return Ok(Err(error)),
+            };
+            if let Some(place) = place {
+                place.write(&points)?;
+            }
+            Ok(Ok((points, 1)))
+        };
+        let results: Outcome<Vec<_>> = (0..sets).into_par_iter().map(one).collect();
+        Ok(results?.into_iter().collect::<Result<Vec<_>, _>>().map(|results| {
+            let made = results.iter().map(|(_, made)| made).sum();
+            (results.into_iter().map(|(points, _)| points).collect(), made)
+        }))
+    }
+}

@@ -1,0 +1,192 @@
+//! `cargo xtask tables`: the thesis's tables with our values beside the printed ones.
+
+mod appendix_b;
+mod markdown;
+mod model;
+mod quick;
+mod statistics;
+mod table_3_1;
+mod table_4_2;
+mod write;
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use bn_cli::{Failure, Outcome};
+use clap::Args;
+
+use crate::measure::{Plan, Store, Workbench};
+use crate::thesis::{Judge, Quantity, Rows, Verdict};
+use crate::workspace;
+pub(crate) use model::{Cell, Row, Table};
+
+/// A table of the thesis and how it is made. One file each; the list below is the registry.
+pub(crate) struct TableSpec {
+    /// Its number in the thesis.
+    id: &'static str,
+    title: &'static str,
+    /// The statistics of point sets that it prints.
+    quantities: &'static [Quantity],
+    /// Makes it; none while that is still to come.
+    make: Option<fn(&TableSpec, &Context<'_>) -> Outcome<Table>>,
+}
+
+/// What a table is made from.
+pub(crate) struct Context<'a> {
+    rows: &'a Rows,
+    judge: &'a Judge,
+    workbench: &'a Workbench,
+}
+
+const fn later(id: &'static str, title: &'static str) -> TableSpec {
+    TableSpec { id, title, quantities: &[], make: None }
+}
+
+/// The thesis's tables in its order.
+static TABLES: [TableSpec; 7] = [
+    table_3_1::SPEC,
+    later("4.1", "Iterations until d_min and d_avg are reached"),
+    table_4_2::SPEC,
+    later("5.1", "Hankel transform pairs"),
+    later("5.2", "Frequency and spatial statistics of step and single-peak blue noise and others"),
+    later("5.3", "PSNR of a rendered checkerboard at high sampling rates"),
+    appendix_b::SPEC,
+];
+
+/// The thesis's tables: its value, ours, the difference, the tolerance and a verdict
+#[derive(Debug, Args)]
+pub(crate) struct TablesArgs {
+    /// Only this table: 3.1, 4.1, 4.2, 5.1, 5.2, 5.3 or B
+    #[arg(long, value_name = "TABLE")]
+    table: Option<String>,
+    /// Number of sets to average
+    #[arg(long, value_name = "K", default_value = "10",
+          value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    sets: u32,
+    /// Points in each set
+    #[arg(short, long = "points", value_name = "N", default_value = "4096",
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    n: u32,
+    /// 2 sets of 1024 points against stored expected values; nothing is kept on disk but the tables
+    #[arg(long, conflicts_with_all = ["sets", "n", "fresh"])]
+    quick: bool,
+    /// A copy of the JSON output in this file
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Make all point sets again instead of reading those that are kept
+    #[arg(long)]
+    fresh: bool,
+    /// Measure what --quick gives for many seeds and store it as what it must give
+    #[arg(long, hide = true, value_name = "RUNS", num_args = 0..=1, default_missing_value = "40",
+          value_parser = clap::value_parser!(u32).range(2..=10_000),
+          conflicts_with_all = ["sets", "n", "fresh", "quick", "json", "table"])]
+    record_quick: Option<u32>,
+}
+
+impl TablesArgs {
+    /// What CI runs.
+    pub(crate) fn for_ci() -> Self {
+        let (table, json) = (None, None);
+        Self { table, sets: 10, n: 4096, quick: true, json, fresh: false, record_quick: None }
+    }
+}
+
+/// What `--quick` makes.
+const QUICK: Plan = Plan { n: 1024, sets: 2, seed: 1 };
+
+pub(crate) fn run(args: &TablesArgs) -> Outcome {
+    if let Some(runs) = args.record_quick {
+        return quick::record(runs);
+    }
+    let wanted = select(args.table.as_deref())?;
+    let folder = workspace::root()?.join("target/thesis");
+    let rows = Rows::load()?;
+    let (judge, workbench, folder) = if args.quick {
+        let bench = Workbench::new(QUICK, quantities(&wanted));
+        (Judge::for_quick()?, bench, folder.join("quick"))
+    } else {
+        let plan = Plan { n: args.n as usize, sets: args.sets, seed: 1 };
+        let bench = Workbench::new(plan, quantities(&wanted)).keeping(
+            Store::new(folder.join("points"), !args.fresh),
+            folder.join(format!("curves/n{}_sets{}", plan.n, plan.sets)),
+        );
+        (Judge::for_thesis(plan.n, plan.sets)?, bench, folder)
+    };
+    let context = Context { rows: &rows, judge: &judge, workbench: &workbench };
+    let mut tables = Vec::new();
+    for spec in wanted {
+        match spec.make {
+            Some(make) => {
+                let table = make(spec, &context)?;
+                write::table(&folder, &table, workbench.plan())?;
+                tables.push(table);
+            }
+            None => eprintln!("table {}: not yet ({})", spec.id, spec.title),
+        }
+    }
+    write::json(&folder.join("tables.json"), &tables, workbench.plan())?;
+    if let Some(path) = &args.json {
+        write::json(path, &tables, workbench.plan())?;
+    }
+    verdict(&tables)
+}
+
+/// The tables asked for.
+fn select(id: Option<&str>) -> Outcome<Vec<&'static TableSpec>> {
+    let Some(id) = id else { return Ok(TABLES.iter().collect()) };
+    match TABLES.iter().find(|spec| spec.id.eq_ignore_ascii_case(id)) {
+        Some(spec) if spec.make.is_some() => Ok(vec![spec]),
+        Some(spec) => {
+            Err(Failure::misuse(format!("table {} ({}) is not made yet", spec.id, spec.title)))
+        }
+        None => {
+            let known: Vec<_> = TABLES.iter().map(|spec| spec.id).collect();
+            Err(Failure::misuse(format!("no table {id}; there are {}", known.join(", "))))
+        }
+    }
+}
+
+/// All that the tables print of point sets.
+fn quantities(tables: &[&TableSpec]) -> Vec<Quantity> {
+    let all: BTreeSet<_> = tables.iter().flat_map(|spec| spec.quantities).copied().collect();
+    all.into_iter().collect()
+}
+
+/// Says how many values fared how; an error if any is outside its tolerance.
+fn verdict(tables: &[Table]) -> Outcome {
+    let count = |v| tables.iter().flat_map(Table::cells).filter(|cell| cell.verdict() == v).count();
+    let shown = [Verdict::Agrees, Verdict::Explained, Verdict::NotJudged, Verdict::NotYet];
+    let counts = shown.map(|v| format!("{} {}", count(v), v.word())).join(", ");
+    match count(Verdict::Outside) {
+        0 => {
+            eprintln!("values: {counts}");
+            Ok(())
+        }
+        outside => Err(Failure::failed(anyhow::anyhow!(
+            "{outside} values are outside their tolerance ({counts})"
+        ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_selected_by_number() {
+        assert_eq!(select(None).expect("all").len(), 7);
+        assert_eq!(select(Some("b")).expect("one")[0].id, "B");
+        let error = select(Some("4.1")).err().expect("not yet");
+        assert_eq!(error.code(), Failure::USAGE);
+        assert!(error.to_string().contains("not made yet"), "{error}");
+        let error = select(Some("9.9")).err().expect("unknown");
+        assert!(error.to_string().contains("3.1, 4.1, 4.2"), "{error}");
+    }
+
+    #[test]
+    fn only_what_is_printed_is_measured() {
+        let asked = |id| quantities(&select(Some(id)).expect("made"));
+        assert_eq!(asked("3.1"), [Quantity::DAvg, Quantity::NuEff, Quantity::Omega]);
+        assert_eq!(asked("B"), Quantity::ALL);
+    }
+}

@@ -1,0 +1,49 @@
+//! Tables on standard output and as files.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::Context as _;
+use bn_cli::{Failure, Outcome, output};
+use serde_json::json;
+
+use super::{Table, markdown};
+use crate::measure::Plan;
+
+/// Prints the table and writes it as Markdown into `folder`.
+pub(super) fn table(folder: &Path, table: &Table, plan: Plan) -> Outcome {
+    let text = markdown::render(table, plan);
+    let name = if table.id == "B" {
+        "appendix_b.md".to_owned()
+    } else {
+        format!("table_{}.md", table.id.replace('.', "_"))
+    };
+    make_folder(folder)?;
+    output::write_file(&folder.join(name), |w| Ok(w.write_all(text.as_bytes())?))?;
+    output::write_stdout(|w| Ok(writeln!(w, "{text}")?))
+}
+
+/// Writes the tables as one JSON object.
+pub(super) fn json(path: &Path, tables: &[Table], plan: Plan) -> Outcome {
+    if let Some(folder) = path.parent() {
+        make_folder(folder)?;
+    }
+    let document = json!({
+        "schema": "bn-thesis-tables",
+        "version": 1,
+        "sets": plan.sets,
+        "points": plan.n,
+        "seed": plan.seed,
+        "tables": tables,
+    });
+    output::write_file(path, |w| Ok(writeln!(w, "{document:#}")?))
+}
+
+fn make_folder(folder: &Path) -> Outcome {
+    if folder.as_os_str().is_empty() {
+        return Ok(());
+    }
+    fs::create_dir_all(folder)
+        .with_context(|| format!("cannot make {}", folder.display()))
+        .map_err(Failure::failed)
+}
