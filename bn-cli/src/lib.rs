@@ -1,1 +1,22 @@
-//! bn.
+//! The workbench for irregular sampling as a library: what the binary `bn` does, for programs that
+//! want the same analysis, plots and reports as functions.
+//!
+//! - [`analysis`]: every statistic of a point set or an ensemble, each computed at most once and
+//!   only if asked for;
+//! - [`plot`] and [`report`]: figures as SVG (and PNG, with the feature `report`);
+//! - [`output`]: files that appear whole or not at all;
+//! - [`commands`]: the subcommands of `bn`.
+//!
+//! Invariant: holds no number of the thesis; every formula lives in a lower crate.
+
+pub mod analysis;
+pub mod commands;
+mod failure;
+pub mod input;
+pub mod output;
+pub mod output_points;
+pub mod plot;
+mod progress_bar;
+pub mod report;
+
+pub use failure::{Failure, Outcome};

@@ -34,8 +34,14 @@ impl Autocorrelation {
     /// [`Self::MAX_SIDE`].
     pub fn of(sets: &[PointSet], half_width: f64, side: usize) -> Self {
         assert!(!sets.is_empty(), "an autocorrelation needs a set");
-        assert!(half_width > 0.0 && half_width <= 0.5, "half width {half_width} is not in (0, 0.5]");
-        assert!((1..=Self::MAX_SIDE).contains(&side), "{side} cells a side; 1 to 4096 are possible");
+        assert!(
+            half_width > 0.0 && half_width <= 0.5,
+            "half width {half_width} is not in (0, 0.5]"
+        );
+        assert!(
+            (1..=Self::MAX_SIDE).contains(&side),
+            "{side} cells a side; 1 to 4096 are possible"
+        );
         let window = Window { half_width, side };
         let mut values = vec![0.0; side * side];
         let area = (2.0 * half_width / side as f64).powi(2);

@@ -53,9 +53,10 @@ pub use nufft::{
 pub use periodogram::{Periodogram, PeriodogramOptions};
 pub use power_image::PowerImage;
 pub use radial::{RadialPower, power_below};
-pub use rustfft::num_complex::Complex;
 pub use rdf::PairHistogram;
+pub use rustfft::num_complex::Complex;
 pub use spectra::{
-    JitteredGrid, LatticeRing, hexagonal_lattice_rings, highest_step, square_lattice_rings, step_rdf,
+    JitteredGrid, LatticeRing, hexagonal_lattice_rings, highest_step, square_lattice_rings,
+    step_rdf,
 };
 pub use window::Window;

@@ -113,6 +113,32 @@ impl RadialPower {
         })
     }
 
+    /// The mean of spectra of ensembles of equally many sets of one size, ring by ring.
+    ///
+    /// The variance of a ring is the mean of the variances: that within the sets, not that of
+    /// their mean periodogram.
+    ///
+    /// # Panics
+    /// If there is no spectrum, or they differ in density or range.
+    pub fn mean_of(spectra: &[&Self]) -> Self {
+        let mut mean = spectra.first().copied().expect("a mean needs a spectrum").clone();
+        let share = 1.0 / spectra.len() as f64;
+        let alike = |other: &Self| other.density == mean.density && other.bounds == mean.bounds;
+        assert!(spectra.iter().all(|other| alike(other)), "the spectra differ in kind");
+        for ring in 0..mean.means.len() {
+            mean.means[ring] = spectra.iter().map(|one| one.means[ring]).sum::<f64>() * share;
+            mean.variances[ring] =
+                spectra.iter().map(|one| one.variances[ring]).sum::<f64>() * share;
+        }
+        mean
+    }
+
+    /// The inner bound of the first ring whose mean power reaches 0.98, from where Ω looks at the
+    /// spectrum.
+    pub fn onset(&self) -> Option<f64> {
+        self.rings().onset()
+    }
+
     /// Bounds of the rings in cycles per unit, one more than rings.
     pub fn bounds(&self) -> &[f64] {
         &self.bounds

@@ -82,6 +82,15 @@ impl<'a> RingMeans<'a> {
         (inner * inner + fraction * (outer * outer - inner * inner)).sqrt()
     }
 
+    /// ν₀ of the oscillation: the inner bound of the first ring with P ≥ 0.98, cycles per unit.
+    pub fn onset(&self) -> Option<f64> {
+        self.onset_ring().map(|ring| self.bounds[ring])
+    }
+
+    fn onset_ring(&self) -> Option<usize> {
+        (0..self.power.len()).find(|&i| self.modes[i] > 0 && self.power[i] >= ONSET_POWER)
+    }
+
     /// The oscillation Ω: ten times the root mean square of P − 1, weighted by modes, from the first
     /// ring with P ≥ 0.98 (its inner bound is ν₀) to ν₀ + 10·√n/2, where the last ring counts by
     /// the share of its area.
@@ -89,7 +98,7 @@ impl<'a> RingMeans<'a> {
     /// `None` if no ring reaches 0.98 or the rings end before.
     pub fn oscillation(&self, density: Density) -> Option<f64> {
         let rings = 0..self.power.len();
-        let first = rings.clone().find(|&i| self.modes[i] > 0 && self.power[i] >= ONSET_POWER)?;
+        let first = self.onset_ring()?;
         let end = self.bounds[first] + RING_WIDTH * density.grid_nyquist();
         if self.bounds[self.power.len()] < end {
             return None;

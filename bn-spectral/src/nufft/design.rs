@@ -45,12 +45,7 @@ mod cost {
 /// The cheapest design for modes |k| ≤ `max_frequency` at relative l2 error `tolerance` with about
 /// `points` points, in arithmetic of precision `epsilon`; the most accurate there is if none
 /// reaches it.
-pub(super) fn design(
-    max_frequency: usize,
-    tolerance: f64,
-    points: usize,
-    epsilon: f64,
-) -> Design {
+pub(super) fn design(max_frequency: usize, tolerance: f64, points: usize, epsilon: f64) -> Design {
     let modes = 2 * max_frequency + 1;
     let least = (modes as f64 * 1.06).ceil().max(2.0 * MAX_WIDTH as f64) as usize;
     let most = (modes as f64 * 2.3).ceil().max(6.0 * MAX_WIDTH as f64) as usize;

@@ -70,10 +70,7 @@ impl KaiserBessel {
             energy += weight * own;
         }
         // One of the two axes aliases at a time, to first order.
-        KernelErrors {
-            aliasing: (2.0 * alias).sqrt(),
-            magnification: (gain * energy).sqrt(),
-        }
+        KernelErrors { aliasing: (2.0 * alias).sqrt(), magnification: (gain * energy).sqrt() }
     }
 
     /// Polynomials of the w taps in z ∈ [−1, 1]: tap i is φ((z + 1)/2 + i − w/2), padded with

@@ -7,7 +7,7 @@ use rustfft::{Fft, FftNum, FftPlanner, FftPlannerScalar};
 
 use super::simd::Simd;
 use super::taps::{Gather, Spread};
-use super::transpose::{FromColumns, ToColumns};
+use super::transpose::{FromColumns, Scale, ToColumns};
 
 /// `f64`, or `f32` where speed and memory count more than digits.
 ///
@@ -25,7 +25,7 @@ pub trait Real: FftNum + NumAssign + Default + PartialOrd + sealed::Sealed {
 }
 
 pub(super) mod sealed {
-    use super::{Arc, Fft, FromColumns, Gather, Simd, Spread, ToColumns};
+    use super::{Arc, Fft, FromColumns, Gather, Scale, Simd, Spread, ToColumns};
 
     /// What is compiled once for each type, here: a generic function would be compiled anew by
     /// every crate that uses a transform, and the FFTs take a minute.
@@ -34,6 +34,7 @@ pub(super) mod sealed {
         fn gather(job: Gather<'_, '_, Self>);
         fn to_columns(simd: Simd, job: ToColumns<'_, '_, Self>);
         fn from_columns(simd: Simd, job: FromColumns<'_, '_, Self>);
+        fn scale(simd: Simd, job: Scale<'_, Self>);
         /// Transforms of this size with e^(−2πi…) and e^(+2πi…).
         fn plan_ffts(size: usize, portable: bool) -> [Arc<dyn Fft<Self>>; 2];
     }
@@ -55,6 +56,10 @@ macro_rules! implement {
             }
 
             fn from_columns(simd: Simd, job: FromColumns<'_, '_, Self>) {
+                simd.run(job);
+            }
+
+            fn scale(simd: Simd, job: Scale<'_, Self>) {
                 simd.run(job);
             }
 

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
-use rustfft::num_complex::Complex;
 use rustfft::Fft;
+use rustfft::num_complex::Complex;
 
 use super::design::Design;
 use super::real::Real;

@@ -3,6 +3,8 @@
 //!
 //! With a the even row and b the odd one, Z = A + iB. As a and b are real,
 //! 2A(k) = Z(k) + Z(−k)*, 2B(k) = (Z(k) − Z(−k)*)/i, and Z(−k) = A(k)* + iB(k)*.
+//!
+//! And the step from the spectrum to the modes, which is a multiplication.
 
 use std::ops::Range;
 
@@ -82,6 +84,26 @@ impl<T: Real> Job for FromColumns<'_, '_, T> {
                     }
                 }
             }
+        }
+    }
+}
+
+/// out = from · along · factor, number by number.
+pub struct Scale<'a, T> {
+    pub(super) out: &'a mut [Complex<T>],
+    pub(super) from: &'a [Complex<T>],
+    pub(super) along: &'a [T],
+    pub(super) factor: T,
+}
+
+impl<T: Real> Job for Scale<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        for ((o, z), &d) in self.out.iter_mut().zip(self.from).zip(self.along) {
+            let d = d * self.factor;
+            *o = Complex::new(z.re * d, z.im * d);
         }
     }
 }

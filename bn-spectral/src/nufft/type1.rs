@@ -9,7 +9,7 @@ use super::real::Real;
 use super::strip::{Packing, Strip};
 use super::tables::{Tables, Workers};
 use super::taps::{Spread, Strengths};
-use super::transpose::ToColumns;
+use super::transpose::{Scale, ToColumns};
 
 /// Which columns kx a spectrum holds.
 #[derive(Clone, Debug)]
@@ -64,27 +64,22 @@ pub(super) fn transform_rows<T: Real>(
 
 /// A transformed column of the grid, about to become modes.
 pub(super) struct GridColumn<'a, T> {
+    tables: &'a Tables<T>,
     line: &'a [Complex<T>],
-    /// 1/φ̂(ky) for ky = −K … K.
-    along: &'a [T],
-    /// 1/φ̂(kx) and what else there is.
-    across: T,
+    /// 1/φ̂(kx), and ½ for real strengths.
+    factor: T,
 }
 
 impl<T: Real> GridColumn<'_, T> {
     /// Writes the modes ky = −K … K.
     pub(super) fn write_to(&self, modes: &mut [Complex<T>]) {
-        let limit = self.along.len() / 2;
-        let scale = |out: &mut [Complex<T>], line: &[Complex<T>], along: &[T]| {
-            for ((o, &value), &d) in out.iter_mut().zip(line).zip(along) {
-                let factor = d * self.across;
-                *o = Complex::new(value.re * factor, value.im * factor);
-            }
-        };
+        let Self { tables, line, factor } = *self;
+        let limit = tables.max_frequency;
         let (negative, positive) = modes.split_at_mut(limit);
-        let (d_negative, d_positive) = self.along.split_at(limit);
-        scale(negative, &self.line[self.line.len() - limit..], d_negative);
-        scale(positive, self.line, d_positive);
+        let (before, after) = tables.deconvolution.split_at(limit);
+        let from = &line[line.len() - limit..];
+        T::scale(tables.simd, Scale { out: negative, from, along: before, factor });
+        T::scale(tables.simd, Scale { out: positive, from: line, along: after, factor });
     }
 }
 
@@ -105,15 +100,12 @@ pub(super) fn transform_columns<T: Real, O: Send>(
         let line = &mut worker.line[..];
         collect_column(tables, columns, spectrum, index, line);
         // The table of 1/φ̂ is centred on k = 0.
-        let across = match columns.packing {
+        let factor = match columns.packing {
             Packing::Single => tables.deconvolution[column],
-            Packing::Paired => {
-                tables.deconvolution[column + tables.max_frequency] * T::narrow(0.5)
-            }
+            Packing::Paired => tables.deconvolution[column + tables.max_frequency] * T::narrow(0.5),
         };
         tables.forward.process_with_scratch(line, &mut worker.scratch);
-        let grid_column = GridColumn { line, along: &tables.deconvolution, across };
-        take(column, output, &grid_column, &mut worker.modes);
+        take(column, output, &GridColumn { tables, line, factor }, &mut worker.modes);
     });
 }
 

@@ -7,7 +7,7 @@ use super::real::Real;
 use super::strip::{Packing, Strip, Strips};
 use super::tables::{Tables, Workers};
 use super::taps::Gather;
-use super::transpose::FromColumns;
+use super::transpose::{FromColumns, Scale};
 
 /// Rows of the grid before their transform, from modes: `spectrum` holds, column by column, all
 /// grid rows. `fill` writes the modes ky = −K … K of
@@ -24,23 +24,20 @@ pub(super) fn transform_columns<T: Real>(
     spectrum.resize(tables.columns(packing).len() * grid, zero);
     workers.each(spectrum.chunks_mut(grid).collect(), |index, line: &mut [_], worker| {
         fill(index, &mut worker.modes);
-        let across = match packing {
+        let factor = match packing {
             Packing::Single => tables.deconvolution[index],
             Packing::Paired => tables.deconvolution[index + limit],
         };
+        let simd = tables.simd;
         if packing == Packing::Paired && index == 0 {
             make_hermitian(&mut worker.modes);
         }
-        let scale = |line: &mut [Complex<T>], modes: &[Complex<T>], along: &[T]| {
-            for ((o, &value), &d) in line.iter_mut().zip(modes).zip(along) {
-                let factor = d * across;
-                *o = Complex::new(value.re * factor, value.im * factor);
-            }
-        };
         let (negative, positive) = worker.modes.split_at(limit);
-        let (d_negative, d_positive) = tables.deconvolution.split_at(limit);
-        scale(&mut line[grid - limit..], negative, d_negative);
-        scale(&mut line[..=limit], positive, d_positive);
+        let (before, after) = tables.deconvolution.split_at(limit);
+        let out = &mut line[grid - limit..];
+        T::scale(simd, Scale { out, from: negative, along: before, factor });
+        let out = &mut line[..=limit];
+        T::scale(simd, Scale { out, from: positive, along: after, factor });
         line[limit + 1..grid - limit].fill(zero);
         tables.inverse.process_with_scratch(line, &mut worker.scratch);
     });

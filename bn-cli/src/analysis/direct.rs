@@ -1,0 +1,89 @@
+//! What comes from the exact periodogram.
+
+use bn_core::{Curve, Density, PointSet};
+use bn_spectral::{PeriodogramOptions, RadialPower};
+
+use super::Estimate;
+
+/// Ω looks at the spectrum up to this far, in √n/2, beyond where it first reaches 1.
+const OSCILLATION_RANGE: f64 = 10.0;
+
+/// Where to look first for the place where the spectrum reaches 1, in √n/2: beyond the first peak
+/// of any pattern that is even, the hexagonal lattice's at 2.15 included.
+const FIRST_LOOK: f64 = 3.0;
+
+/// Where to stop looking.
+const LAST_LOOK: f64 = 24.0;
+
+/// The ring means of an ensemble's periodogram as far as ν_eff and Ω need them.
+#[derive(Clone, Debug)]
+pub struct Direct {
+    mean: RadialPower,
+    left_out: Vec<RadialPower>,
+}
+
+impl Direct {
+    pub(super) fn of(sets: &[PointSet]) -> Self {
+        let limit = range_of_interest(sets);
+        let each: Vec<RadialPower> =
+            sets.iter().map(|set| radial_power(std::slice::from_ref(set), limit)).collect();
+        let left_out = (0..each.len()).filter(|_| each.len() > 1).map(|i| {
+            let others: Vec<&RadialPower> =
+                each.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, one)| one).collect();
+            RadialPower::mean_of(&others)
+        });
+        let left_out = left_out.collect();
+        let mean = RadialPower::mean_of(&each.iter().collect::<Vec<_>>());
+        Self { mean, left_out }
+    }
+
+    /// The radial power spectrum at the rings' centres, mean over the sets.
+    pub fn power(&self) -> Option<Curve> {
+        self.mean.curve()
+    }
+
+    pub(super) fn effective_nyquist(&self) -> Option<Estimate> {
+        self.estimate(|power| Some(power.effective_nyquist()?.value()))
+    }
+
+    pub(super) fn oscillation(&self) -> Option<Estimate> {
+        self.estimate(RadialPower::oscillation)
+    }
+
+    /// A figure of the mean spectrum, its error from the means with each set left out.
+    fn estimate(&self, figure: impl Fn(&RadialPower) -> Option<f64>) -> Option<Estimate> {
+        let left_out: Vec<f64> = self.left_out.iter().filter_map(&figure).collect();
+        Some(Estimate::jackknife(figure(&self.mean)?, &left_out))
+    }
+}
+
+/// The largest frequency (cycles per unit) that ν_eff and Ω ask for.
+fn range_of_interest(sets: &[PointSet]) -> usize {
+    let density = sets[0].density();
+    let frequency = |relative: f64| (relative * density.grid_nyquist()).ceil() as usize + 1;
+    let mut look = FIRST_LOOK;
+    while look < LAST_LOOK {
+        let power = radial_power(sets, frequency(look));
+        if let Some(onset) = power.onset() {
+            return onset.ceil() as usize + frequency(OSCILLATION_RANGE);
+        }
+        look *= 2.0;
+    }
+    frequency(LAST_LOOK + OSCILLATION_RANGE)
+}
+
+pub(super) fn radial_power(sets: &[PointSet], max_frequency: usize) -> RadialPower {
+    RadialPower::of(sets, PeriodogramOptions::new(max_frequency))
+        .expect("10⁸ points ask for frequencies that can be planned")
+}
+
+/// The mean power below `frequency` of each set; none if no mode lies there.
+pub(super) fn powers_below(sets: &[PointSet], frequency: f64) -> Vec<f64> {
+    let below = |set| bn_spectral::power_below(set, frequency).ok().flatten();
+    sets.iter().filter_map(below).collect()
+}
+
+/// The largest frequency, in cycles per unit, up to which figures show a spectrum by default.
+pub(super) fn shown_frequency(density: Density) -> usize {
+    (OSCILLATION_RANGE * density.grid_nyquist()).ceil().max(1.0) as usize
+}

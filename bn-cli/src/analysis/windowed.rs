@@ -1,0 +1,45 @@
+//! What comes from pair distances through the thesis's window.
+
+use bn_core::{Curve, PointSet};
+use bn_spectral::WindowedSpectrum;
+
+use super::Estimate;
+
+/// The spectra of an ensemble by the thesis's estimator; see [`WindowedSpectrum`].
+#[derive(Clone, Debug)]
+pub struct Windowed {
+    each: Vec<WindowedSpectrum>,
+    mean: WindowedSpectrum,
+}
+
+impl Windowed {
+    pub(super) fn of(sets: &[PointSet]) -> Self {
+        let spectra = WindowedSpectrum::of_each(sets)
+            .and_then(|each| Ok((WindowedSpectrum::mean(&each)?, each)));
+        let (mean, each) = spectra.expect("an analysis holds sets of one size");
+        Self { each, mean }
+    }
+
+    /// The radial power spectrum, mean over the sets.
+    pub fn power(&self) -> &Curve {
+        self.mean.power()
+    }
+
+    pub(super) fn effective_nyquist(&self) -> Option<Estimate> {
+        self.estimate(|spectrum| Some(spectrum.effective_nyquist()?.value()))
+    }
+
+    pub(super) fn oscillation(&self) -> Option<Estimate> {
+        self.estimate(WindowedSpectrum::oscillation)
+    }
+
+    /// A figure of the mean spectrum, its error from the means with each set left out.
+    fn estimate(&self, figure: impl Fn(&WindowedSpectrum) -> Option<f64>) -> Option<Estimate> {
+        let left_out = (0..self.each.len()).filter(|_| self.each.len() > 1).filter_map(|i| {
+            let mut others = self.each.clone();
+            others.remove(i);
+            figure(&WindowedSpectrum::mean(&others).ok()?)
+        });
+        Some(Estimate::jackknife(figure(&self.mean)?, &left_out.collect::<Vec<_>>()))
+    }
+}

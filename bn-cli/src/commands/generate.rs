@@ -1,0 +1,248 @@
+//! `bn generate`: patterns from the registry of methods.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::anyhow;
+use bn_core::io::Format;
+use bn_core::{Observer, PointSet, Seed, Unobserved};
+use bn_samplers::{DefaultValue, METHODS, Method, OptionKind, OptionSpec, Report, Sample, Sampler};
+use clap::builder::ValueRange;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command};
+use rayon::prelude::*;
+use serde_json::{Map, Value, json};
+
+use super::Global;
+use crate::progress_bar::Bar;
+use crate::{Failure, Outcome, output, output_points};
+
+/// What every method takes.
+#[derive(Debug, Args)]
+struct Generate {
+    /// Number of points
+    #[arg(short, value_name = "N", default_value = "4096",
+          value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    n: u32,
+    /// Seed of the random numbers; the same seed gives the same bytes
+    #[arg(short, long, value_name = "SEED", default_value = "1")]
+    seed: u64,
+    /// Number of sets, each from its own random numbers; set 0 is what a single set would be
+    #[arg(short = 'm', long, value_name = "K", default_value = "1",
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    sets: u32,
+    /// File to write, `-` for standard output. Several sets go into one .dat, .npy or .json, or into
+    /// name_0.ext, name_1.ext, ... ; {i} in the name says where the index goes
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+    /// Format of the output (default: by the file's extension; txt or dat on standard output)
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
+    /// A JSON account of the run on standard output: seed, options, iterations, residual, seconds
+    #[arg(long)]
+    json: bool,
+}
+
+/// Points in all sets together: 3 GiB of coordinates.
+const MAX_TOTAL: u64 = 200_000_000;
+
+pub(super) fn command() -> Command {
+    Command::new("generate")
+        .about("Make patterns: `bn generate METHOD`")
+        .long_about(
+            "Make patterns: `bn generate METHOD`. `bn generate METHOD --help` tells the method's \
+             options and sources.",
+        )
+        .after_help("Example: bn generate jittered -n 1024 --sets 10 -o jittered.npy")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand_value_name("METHOD")
+        .subcommand_help_heading("Methods")
+        .disable_help_subcommand(true)
+        .subcommands(METHODS.iter().map(|method| method_command(method)))
+}
+
+fn method_command(method: &'static Method) -> Command {
+    let page = method.page.map(|page| format!("Heck 2013, page {page}. ")).unwrap_or_default();
+    Generate::augment_args(Command::new(method.name))
+        .about(method.summary)
+        .long_about(format!(
+            "{}\n\nSource: {page}{}\nCost: {}\nOrder: {}\nCounts: {}",
+            method.summary, method.citation, method.complexity, method.order, method.counts
+        ))
+        .visible_aliases(method.aliases)
+        .after_help(format!("Example: bn generate {} -n 1024 --seed 1 -o points.txt", method.name))
+        .args(method.options.iter().map(option_argument))
+}
+
+fn option_argument(spec: &'static OptionSpec) -> Arg {
+    let unit = if spec.unit.is_empty() { String::new() } else { format!(" [{}]", spec.unit) };
+    let default = match spec.default {
+        DefaultValue::Value(text) => format!("default: {text}"),
+        DefaultValue::Absent(text) => format!("default: {text}"),
+    };
+    let argument = Arg::new(spec.name).long(spec.name).help_heading("Options of the method");
+    match spec.kind {
+        // `--flag` alone is true; `--flag=false` is possible too.
+        OptionKind::Flag => argument
+            .num_args(ValueRange::from(0..=1))
+            .require_equals(true)
+            .default_missing_value("true")
+            .help(format!("{}{unit}", spec.help)),
+        _ => argument
+            .num_args(1)
+            .allow_negative_numbers(true)
+            .value_name(value_name(spec.kind))
+            .help(format!("{}{unit}: {} ({default})", spec.help, spec.kind)),
+    }
+    .action(ArgAction::Set)
+}
+
+fn value_name(kind: OptionKind) -> &'static str {
+    match kind {
+        OptionKind::Integer { .. } => "N",
+        OptionKind::Real { .. } => "X",
+        OptionKind::Choice(_) => "WORD",
+        OptionKind::Flag | OptionKind::Text => "TEXT",
+    }
+}
+
+pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
+    let Some((name, matches)) = matches.subcommand() else {
+        unreachable!("clap requires a method");
+    };
+    let method = bn_samplers::find(name).map_err(Failure::usage)?;
+    let args: Generate = super::parsed(matches)?;
+    let options = given_options(method, matches);
+    let sampler = method.with_options(options.iter().copied()).map_err(Failure::usage)?;
+    if u64::from(args.n) * u64::from(args.sets) > MAX_TOTAL {
+        return Err(Failure::misuse(format!(
+            "{} sets of {} points are more than {MAX_TOTAL} points in all; make them in several runs",
+            args.sets, args.n
+        )));
+    }
+    if args.json && args.output == Path::new("-") {
+        return Err(Failure::misuse(
+            "--json needs standard output for itself; name a file with -o",
+        ));
+    }
+    let format = args.format;
+    output_points::check(&args.output, format)?;
+    let start = Instant::now();
+    let samples = sample_all(&*sampler, &args, global)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let (sets, reports): (Vec<PointSet>, Vec<Report>) =
+        samples.into_iter().map(|sample| (sample.points, sample.report)).unzip();
+    for (i, report) in reports.iter().enumerate() {
+        for note in &report.notes {
+            let set = if reports.len() > 1 { format!("set {i}: ") } else { String::new() };
+            global.remark(format!("{set}{note}"));
+        }
+    }
+    output_points::write(&args.output, format, &sets)?;
+    if args.json {
+        let account = account(method, &args, &options, &sets, &reports, seconds);
+        return output::write_stdout(|w| Ok(writeln!(w, "{account:#}")?));
+    }
+    Ok(())
+}
+
+/// The method's options that were typed, as text.
+fn given_options<'a>(
+    method: &'static Method,
+    matches: &'a ArgMatches,
+) -> Vec<(&'static str, &'a str)> {
+    let typed = |spec: &OptionSpec| matches.get_one::<String>(spec.name).map(String::as_str);
+    method.options.iter().filter_map(|spec| Some((spec.name, typed(spec)?))).collect()
+}
+
+/// The sets, made in parallel; one alone shows how it proceeds, several show how many are done.
+fn sample_all(sampler: &dyn Sampler, args: &Generate, global: &Global) -> Outcome<Vec<Sample>> {
+    let n = args.n as usize;
+    let bar = Bar::new(global.quiet);
+    let one = |set: u32, observer: &dyn Observer| {
+        sampler.sample(n, Seed::new(args.seed).for_set(set), observer).map_err(|error| {
+            let usage = error.is_usage();
+            let error = anyhow!(error);
+            if usage { Failure::usage(error) } else { Failure::failed(error) }
+        })
+    };
+    if args.sets == 1 {
+        return Ok(vec![one(0, &bar)?]);
+    }
+    let progress = bar.counting("sets", u64::from(args.sets));
+    (0..args.sets)
+        .into_par_iter()
+        .map(|set| {
+            let sample = one(set, &Unobserved);
+            progress.step();
+            sample
+        })
+        .collect()
+}
+
+/// The JSON account of a run. `iterations` is summed over the sets, `residual` the largest.
+fn account(
+    method: &Method,
+    args: &Generate,
+    options: &[(&str, &str)],
+    sets: &[PointSet],
+    reports: &[Report],
+    seconds: f64,
+) -> Value {
+    let figures: Vec<Map<String, Value>> = reports.iter().map(figures).collect();
+    let known = |name: &str| -> Vec<f64> {
+        figures.iter().filter_map(|run| run.get(name).and_then(Value::as_f64)).collect()
+    };
+    let iterations = known("iterations");
+    let runs: Vec<Value> = sets
+        .iter()
+        .zip(reports)
+        .zip(&figures)
+        .map(|((set, report), figures)| {
+            json!({"points": set.len(), "figures": figures, "notes": report.notes})
+        })
+        .collect();
+    let all_options: Map<String, Value> = method
+        .options
+        .iter()
+        .map(|spec| (spec.name.to_owned(), option_value(spec, options)))
+        .collect();
+    json!({
+        "method": method.name,
+        "method_version": method.version,
+        "n": args.n,
+        "seed": args.seed,
+        "sets": args.sets,
+        "options": all_options,
+        "iterations": (!iterations.is_empty()).then(|| iterations.iter().sum::<f64>() as u64),
+        "residual": known("residual").into_iter().reduce(f64::max),
+        "seconds": seconds,
+        "runs": runs,
+    })
+}
+
+/// The option as given or its default; null where the method chooses by itself.
+fn option_value(spec: &OptionSpec, given: &[(&str, &str)]) -> Value {
+    let text = given.iter().find(|(name, _)| *name == spec.name).map(|(_, text)| text.trim());
+    let text = match (text, spec.default) {
+        (Some(text), _) | (None, DefaultValue::Value(text)) => text,
+        (None, DefaultValue::Absent(_)) => return Value::Null,
+    };
+    match spec.kind {
+        // The sampler has been built from this text, so it parses.
+        OptionKind::Flag | OptionKind::Integer { .. } | OptionKind::Real { .. } => {
+            text.parse().unwrap_or_else(|_| json!(text.parse::<f64>().ok()))
+        }
+        OptionKind::Choice(_) | OptionKind::Text => json!(text),
+    }
+}
+
+fn figures(report: &Report) -> Map<String, Value> {
+    use bn_samplers::FigureValue;
+    let value = |value| match value {
+        FigureValue::Count(count) => json!(count),
+        FigureValue::Real(real) => json!(real),
+        FigureValue::Holds(holds) => json!(holds),
+    };
+    report.figures.iter().map(|figure| (figure.name.to_owned(), value(figure.value))).collect()
+}

@@ -1,0 +1,80 @@
+//! Point files and standard input.
+
+use std::io::Read;
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use bn_core::Ensemble;
+use bn_core::io::{self, Format, ReadError, ReadOptions, ReadProblem};
+
+use crate::{Failure, Outcome};
+
+/// The sets of a file, or of standard input for `-`.
+///
+/// Without `format` a file's extension decides; on standard input the first bytes do.
+pub fn read(path: &Path, format: Option<Format>, wrap: bool) -> Outcome<Ensemble> {
+    let options = ReadOptions { wrap };
+    if path.as_os_str() == "-" {
+        return read_stdin(format, options);
+    }
+    io::read_path(path, format, options).map_err(failure)
+}
+
+fn read_stdin(format: Option<Format>, options: ReadOptions) -> Outcome<Ensemble> {
+    let mut bytes = Vec::new();
+    std::io::stdin()
+        .lock()
+        .read_to_end(&mut bytes)
+        .context("cannot read standard input")
+        .map_err(Failure::failed)?;
+    let format = format.unwrap_or_else(|| recognize(&bytes));
+    io::read(format, "standard input", &bytes[..], options).map_err(failure)
+}
+
+/// The format that bytes without a name are most likely in. `.rps` has no mark of its own and must
+/// be named.
+fn recognize(bytes: &[u8]) -> Format {
+    let text = bytes.trim_ascii_start();
+    if bytes.starts_with(b"\x93NUMPY") {
+        Format::Npy
+    } else if text.starts_with(b"{") {
+        Format::Json
+    } else if text.starts_with(b"%!") {
+        Format::Eps
+    } else if text.contains(&b'#') {
+        Format::Dat
+    } else if text.contains(&b',') {
+        Format::Csv
+    } else {
+        Format::Txt
+    }
+}
+
+/// A disk that fails is a failure; bad contents and names that lead nowhere are bad input.
+fn failure(error: ReadError) -> Failure {
+    use std::io::ErrorKind::{IsADirectory, NotADirectory, NotFound};
+    match error.problem() {
+        ReadProblem::Io(io) if !matches!(io.kind(), NotFound | IsADirectory | NotADirectory) => {
+            Failure::failed(anyhow!(error))
+        }
+        _ => Failure::usage(anyhow!(error)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_are_recognized_by_their_first_bytes() {
+        let set = bn_core::PointSet::new(vec![bn_core::DVec2::new(0.25, 0.5); 3]).expect("valid");
+        for format in Format::ALL {
+            let sets = if format == Format::Dat { vec![set.clone(); 2] } else { vec![set.clone()] };
+            let mut bytes = Vec::new();
+            io::write(format, &sets, &mut bytes).expect("in memory");
+            if format != Format::Rps {
+                assert_eq!(recognize(&bytes), format);
+            }
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Sets of points into one file or several.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+use bn_core::PointSet;
+use bn_core::io::{self, Format, WriteError};
+
+use crate::{Failure, Outcome, output};
+
+/// Writes the sets: into one file if the format holds several sets or there is only one, else into
+/// `name_0.ext`, `name_1.ext`, …; `{i}` in the name asks for one file a set and says where the
+/// index goes. Standard output (`-`) is `.txt` for one set and `.dat` for several.
+///
+/// Returns after the last file is complete; each file appears whole or not at all.
+pub fn write(path: &Path, format: Option<Format>, sets: &[PointSet]) -> Outcome {
+    let format = choose(path, format, sets.len())?;
+    if has_place(path) || (sets.len() > 1 && !format.holds_ensembles()) {
+        if path.as_os_str() == "-" {
+            return Err(Failure::misuse(format!(
+                "the format {} holds one set; write {} sets to files, or as dat, npy or json",
+                format.name(),
+                sets.len()
+            )));
+        }
+        for (index, set) in sets.iter().enumerate() {
+            write_one(&numbered(path, index), format, std::slice::from_ref(set))?;
+        }
+        return Ok(());
+    }
+    write_one(path, format, sets)
+}
+
+/// Refuses a name whose format can't be told, before any work is done.
+pub fn check(path: &Path, format: Option<Format>) -> Outcome {
+    choose(path, format, 1).map(drop)
+}
+
+fn write_one(path: &Path, format: Format, sets: &[PointSet]) -> Outcome {
+    output::write_to(path, |w| {
+        io::write(format, sets, w).map_err(|error| match error {
+            WriteError::Io(error) => Failure::failed(error),
+            other => Failure::usage(anyhow!(other)),
+        })
+    })
+}
+
+fn choose(path: &Path, format: Option<Format>, sets: usize) -> Outcome<Format> {
+    if let Some(format) = format {
+        return Ok(format);
+    }
+    if path.as_os_str() == "-" {
+        return Ok(if sets == 1 { Format::Txt } else { Format::Dat });
+    }
+    Format::from_path(path).map_err(|error| {
+        Failure::misuse(format!("{}: {error}; rename the file or give --format", path.display()))
+    })
+}
+
+const PLACE: &str = "{i}";
+
+fn has_place(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().contains(PLACE))
+}
+
+/// The name of set `index`: in the place of `{i}`, else before the extension.
+fn numbered(path: &Path, index: usize) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    if name.contains(PLACE) {
+        return path.with_file_name(name.replace(PLACE, &index.to_string()));
+    }
+    let mut stem = path.file_stem().unwrap_or_default().to_owned();
+    stem.push(format!("_{index}"));
+    if let Some(extension) = path.extension() {
+        stem.push(OsString::from("."));
+        stem.push(extension);
+    }
+    path.with_file_name(stem)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn indices_go_where_they_are_asked_for() {
+        let name = |path: &str| numbered(Path::new(path), 7).to_string_lossy().into_owned();
+        assert_eq!(name("a/s.rps"), "a/s_7.rps");
+        assert_eq!(name("a/s-{i}-b.rps"), "a/s-7-b.rps");
+        assert_eq!(name("s"), "s_7");
+    }
+
+    #[test]
+    fn unknown_extensions_are_refused() {
+        assert_eq!(
+            check(Path::new("points.xyz"), None).expect_err("unknown").code(),
+            Failure::USAGE
+        );
+        assert!(check(Path::new("points.xyz"), Some(Format::Txt)).is_ok());
+    }
+}

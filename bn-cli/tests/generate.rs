@@ -1,0 +1,135 @@
+//! `bn generate`, `bn list` and `bn convert` as scripts call them.
+
+#![expect(clippy::unwrap_used, reason = "a test that can't go on should stop")]
+
+mod common;
+
+use common::Folder;
+
+#[test]
+fn one_set_goes_to_standard_output_as_psa_reads_it() {
+    let text = Folder::new().bn("generate stochastic -n 5 --seed 3").done().text();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines.len(), 6, "{text}");
+    assert_eq!(lines[0], "5");
+    assert!(lines[1..].iter().all(|line| line.split(' ').count() == 2), "{text}");
+}
+
+#[test]
+fn several_sets_split_where_the_format_holds_one() {
+    let folder = Folder::new();
+    folder.bn("generate stochastic -n 64 --sets 3 -o s.rps").done();
+    assert_eq!(folder.names(), ["s_0.rps", "s_1.rps", "s_2.rps"]);
+    assert_eq!(folder.read("s_2.rps").len(), 512);
+    folder.bn("generate stochastic -n 64 --sets 3 -o all.npy").done();
+    folder.bn("generate stochastic -n 64 --sets 2 -o set-{i}.txt").done();
+    folder.bn("generate stochastic -n 64 -o alone.rps").done();
+    assert_eq!(
+        folder.names(),
+        ["all.npy", "alone.rps", "s_0.rps", "s_1.rps", "s_2.rps", "set-0.txt", "set-1.txt"]
+    );
+    // Set 0 is what one set alone is, and the sets differ.
+    assert_eq!(folder.read("alone.rps"), folder.read("s_0.rps"));
+    assert_ne!(folder.read("s_0.rps"), folder.read("s_1.rps"));
+    folder.bn("convert all.npy back.rps").done();
+    assert_eq!(folder.read("back_1.rps"), folder.read("s_1.rps"));
+}
+
+#[test]
+fn several_sets_can_be_piped() {
+    let folder = Folder::new();
+    let sets = folder.bn("generate stochastic -n 16 --sets 2").done().stdout;
+    let analyses = folder.bn_with("analyze - --json --only d_avg", &sets, &[]).done().json();
+    assert_eq!(analyses[0]["sets"], 2);
+    assert_eq!(analyses[0]["points"], 16);
+}
+
+#[test]
+fn the_account_says_what_was_done() {
+    let folder = Folder::new();
+    let account = folder.bn("generate jittered -n 100 --seed 7 -o j.txt --json").done().json();
+    assert_eq!(account["method"], "jittered");
+    assert_eq!(account["seed"], 7);
+    assert!(account["seconds"].as_f64().unwrap() >= 0.0);
+    assert!(account["options"].is_object());
+    folder.bn("generate jittered -n 100 --json").refused(2, &["-o"]);
+}
+
+#[test]
+fn every_method_gives_the_same_bytes_on_any_number_of_threads() {
+    let folder = Folder::new();
+    let list = folder.bn("list --json").done().json();
+    for method in list.as_array().unwrap() {
+        let name = method["name"].as_str().unwrap();
+        let words = format!("generate {name} -n 256 --seed 3");
+        let one = folder.bn_with(&words, &[], &[("RAYON_NUM_THREADS", "1")]).done();
+        let two = folder.bn(&format!("{words} --threads 2")).done();
+        assert_eq!(one.stdout, two.stdout, "{name}");
+    }
+}
+
+#[test]
+fn help_tells_options_and_sources() {
+    let help = Folder::new().bn("generate jittered --help").done().text();
+    for word in ["--width", "Heck 2013", "Example", "--seed"] {
+        assert!(help.contains(word), "no {word} in {help}");
+    }
+}
+
+#[test]
+fn bad_use_is_said_in_one_line() {
+    let folder = Folder::new();
+    folder.bn("generate nosuch").refused(2, &["nosuch"]);
+    folder.bn("generate stochastik -n 4").refused(2, &["stochastic"]);
+    folder.bn("generate stochastic -n 0").refused(2, &["-n"]);
+    folder.bn("generate stochastic -n 99999999999999999").refused(2, &["100000000"]);
+    folder
+        .bn("generate stochastic -n 100000000 --sets 1000 -o a.npy")
+        .refused(2, &["several runs"]);
+    folder.bn("generate regular -n 5").refused(2, &["-n 4"]);
+    folder.bn("generate jittered --width -1").refused(2, &["--width"]);
+    folder.bn("generate jittered --width nan").refused(2, &["--width"]);
+    folder.bn("generate stochastic -o points.xyz").refused(2, &["points.xyz", "txt"]);
+    folder.bn("generate stochastic -o absent/points.txt").refused(1, &["absent/points.txt"]);
+    folder.bn("--threads 0 list").refused(2, &["--threads"]);
+    folder.bn("convert absent.txt out.npy").refused(2, &["absent.txt"]);
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_is_a_failure() {
+    Folder::new()
+        .bn("generate stochastic -n 64 -o /dev/full --format txt")
+        .refused(1, &["/dev/full"]);
+}
+
+#[test]
+fn a_closed_pipe_is_quiet() {
+    use std::process::{Command, Stdio};
+    let mut child = Command::new(env!("CARGO_BIN_EXE_bn"))
+        .args(["generate", "stochastic", "-n", "100000"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn conversions_keep_every_bit() {
+    let folder = Folder::new();
+    folder.bn("generate jittered -n 100 --seed 9 -o a.npy").done();
+    folder.bn("generate jittered -n 100 --seed 9 -o f.rps").done();
+    for extension in ["txt", "dat", "csv", "json", "eps"] {
+        folder.bn(&format!("convert a.npy b.{extension}")).done();
+        folder.bn(&format!("convert b.{extension} c.npy")).done();
+        assert_eq!(folder.read("c.npy"), folder.read("a.npy"), "{extension}");
+        folder.bn(&format!("convert f.rps g.{extension}")).done();
+        folder.bn(&format!("convert g.{extension} g.rps")).done();
+        assert_eq!(folder.read("g.rps"), folder.read("f.rps"), "{extension}");
+    }
+}
