@@ -20,32 +20,52 @@ impl Circle {
     }
 }
 
+/// Squared sine of the angle at a corner below which area and centre would cancel.
+const FLAT: f64 = 1e-6;
+
 /// The circle through the corners of a triangle of positive area on the coordinate grid.
 ///
 /// Squared radius and the vector from a corner to the centre carry some tens of rounding errors,
-/// however flat the triangle is: below an angle of a thousandth at the first corner, where area
-/// and centre would cancel, the area is taken exactly and from the corner with the widest angle.
+/// however flat the triangle is: where the angle at the first corner is below a thousandth, the area
+/// is taken exactly and from the corner with the widest angle.
 #[inline]
 pub fn circumcircle([a, b, c]: [DVec2; 3]) -> Circle {
     let (u, v) = (b - a, c - a);
     let (u2, v2) = (u.length_squared(), v.length_squared());
     let area = u.x * v.y - u.y * v.x;
-    if area * area > 1e-6 * (u2 * v2) {
+    if area * area > FLAT * (u2 * v2) {
         through_origin(a, u, v, area)
     } else {
         circumcircle_of_sliver([a, b, c])
     }
 }
 
+/// The squared radius of [`circumcircle`], bit for bit.
+#[inline]
+pub fn circumradius_squared([a, b, c]: [DVec2; 3]) -> f64 {
+    let (u, v) = (b - a, c - a);
+    let (u2, v2) = (u.length_squared(), v.length_squared());
+    let area = u.x * v.y - u.y * v.x;
+    if area * area > FLAT * (u2 * v2) {
+        radius_squared(u, v, area)
+    } else {
+        circumcircle_of_sliver([a, b, c]).radius_squared
+    }
+}
+
 /// The circle through `origin`, origin + u and origin + v, given u × v.
 #[inline]
 fn through_origin(origin: DVec2, u: DVec2, v: DVec2, cross: f64) -> Circle {
-    let (u2, v2, w2) = (u.length_squared(), v.length_squared(), (v - u).length_squared());
-    let scale = 0.5 / cross;
-    let w = (u * v2 - v * u2) * scale;
-    // The product of the sides over four times the area, squared.
-    let radius_squared = u2 * v2 * w2 * (scale * scale);
-    Circle { center: origin + DVec2::new(-w.y, w.x), radius_squared }
+    let w = (u * v.length_squared() - v * u.length_squared()) * (0.5 / cross);
+    let center = origin + DVec2::new(-w.y, w.x);
+    Circle { center, radius_squared: radius_squared(u, v, cross) }
+}
+
+/// The product of the sides over four times the area, squared.
+#[inline]
+fn radius_squared(u: DVec2, v: DVec2, cross: f64) -> f64 {
+    let sides = u.length_squared() * v.length_squared() * (v - u).length_squared();
+    sides / (4.0 * (cross * cross))
 }
 
 #[cold]

@@ -34,26 +34,34 @@ pub struct EmptyCircles {
 impl EmptyCircles {
     /// The circles of all faces of a triangulation. O(n).
     pub fn new(triangulation: &Triangulation) -> Self {
-        // Room to grow, so that adding points one by one costs O(1) amortised.
-        let mut radius_squared = MaxTree::zeros(triangulation.face_bound() * 2);
-        for (face, circle) in triangulation.circumcircles() {
-            radius_squared.set(face.id.index(), circle.radius_squared);
-        }
-        Self { radius_squared }
+        let bound = triangulation.face_bound();
+        let mut circles = Self { radius_squared: MaxTree::zeros(bound) };
+        circles.renew(triangulation, (0..bound).map(FaceId::new));
+        circles
     }
 
     /// Takes over what the last insertion or removal changed.
     #[inline]
     pub fn update(&mut self, triangulation: &Triangulation) {
-        if triangulation.face_bound() > self.radius_squared.len() {
-            *self = Self::new(triangulation);
-            return;
+        let bound = triangulation.face_bound();
+        if bound <= self.radius_squared.len() {
+            self.renew(triangulation, triangulation.changed_faces().iter().copied());
+        } else {
+            // Room to grow, so that adding points one by one costs O(1) amortised.
+            self.radius_squared = MaxTree::zeros(2 * bound);
+            self.renew(triangulation, (0..bound).map(FaceId::new));
         }
-        for &face in triangulation.changed_faces() {
-            let circle = triangulation.has_face(face).then(|| triangulation.circumcircle(face));
-            let radius_squared = circle.map_or(0.0, |circle| circle.radius_squared);
-            self.radius_squared.set(face.index(), radius_squared);
-        }
+    }
+
+    #[inline]
+    fn renew(
+        &mut self,
+        triangulation: &Triangulation,
+        faces: impl Iterator<Item = FaceId> + Clone,
+    ) {
+        self.radius_squared.set(faces.map(FaceId::index), |index| {
+            triangulation.circumradius_squared(FaceId::new(index)).unwrap_or(0.0)
+        });
     }
 
     /// The face with the largest circle, of several the one of lowest id; none if there is no face.

@@ -40,6 +40,66 @@ pub fn cross_exactly(u: DVec2, v: DVec2) -> f64 {
     Units::new(u).cross(Units::new(v)) as f64 / (UNITS * UNITS)
 }
 
+/// The angle at a point from one vector to another: |u||v| times its cosine and its sine.
+#[derive(Clone, Copy, Debug)]
+pub struct Angle {
+    dot: f64,
+    cross: f64,
+}
+
+impl Angle {
+    /// The angle from u counter-clockwise to v.
+    #[inline]
+    pub fn between(u: DVec2, v: DVec2) -> Self {
+        Self { dot: u.dot(v), cross: u.perp_dot(v) }
+    }
+
+    /// The angle from v to u.
+    #[inline]
+    pub fn reversed(self) -> Self {
+        Self { dot: self.dot, cross: -self.cross }
+    }
+
+    /// At least |u||v|, up to rounding.
+    #[inline]
+    fn size(self) -> f64 {
+        self.dot.abs() + self.cross.abs()
+    }
+
+    /// The angle from any vector to itself.
+    pub const ZERO: Self = Self { dot: 1.0, cross: 0.0 };
+
+    /// Whether the angle lies in (0, π), where this is sure to be told from (−π, 0).
+    #[inline]
+    pub fn is_left(self) -> Sign {
+        // Dot and cross product have errors below 2·2⁻⁵³ |u||v|.
+        const BOUND: f64 = 2.0 * f64::EPSILON;
+        Sign { is_positive: self.cross > 0.0, is_sure: self.cross.abs() > BOUND * self.size() }
+    }
+}
+
+/// The sign of a number that was computed with rounding.
+#[derive(Clone, Copy, Debug)]
+pub struct Sign {
+    /// The sign of the number as computed.
+    pub is_positive: bool,
+    /// Whether it is that of the exact number.
+    pub is_sure: bool,
+}
+
+/// Whether q lies inside the circle through u, v and p, which turn counter-clockwise, given the
+/// angle at p from u to v and the angle at q from v to u: whether they add up to more than π, or,
+/// with p and q on the same side, the one at q is the larger.
+#[inline]
+pub fn is_inside(at_p: Angle, at_q: Angle) -> Sign {
+    // The products have errors below 4·2⁻⁵³ of the product of sizes by those of the factors and
+    // 2·2⁻⁵³ by their own rounding and that of the sum.
+    const BOUND: f64 = 5.0 * f64::EPSILON;
+    let sine = at_p.cross * at_q.dot + at_p.dot * at_q.cross;
+    let is_sure = sine.abs() > BOUND * (at_p.size() * at_q.size());
+    Sign { is_positive: sine < 0.0, is_sure }
+}
+
 /// Whether the origin lies inside the circle through a, b, c, which turn counter-clockwise.
 ///
 /// An origin on the circle counts as inside or outside by the *perturbed* metric
@@ -50,21 +110,13 @@ pub fn cross_exactly(u: DVec2, v: DVec2) -> f64 {
 /// no point lies inside the circle of a triangle.
 #[inline]
 pub fn in_circle(a: DVec2, b: DVec2, c: DVec2) -> bool {
-    // With exact input a term takes 5 roundings and the sum 2 more; 2 spare ones cover those of
-    // the permanent.
-    const BOUND: f64 = 5.0 * f64::EPSILON;
-    let (a2, b2, c2) = (a.length_squared(), b.length_squared(), c.length_squared());
-    let (bc, cb) = (b.x * c.y, b.y * c.x);
-    let (ca, ac) = (c.x * a.y, c.y * a.x);
-    let (ab, ba) = (a.x * b.y, a.y * b.x);
-    let det = a2 * (bc - cb) + b2 * (ca - ac) + c2 * (ab - ba);
-    let permanent =
-        a2 * (bc.abs() + cb.abs()) + b2 * (ca.abs() + ac.abs()) + c2 * (ab.abs() + ba.abs());
-    if det.abs() > BOUND * permanent { det > 0.0 } else { in_circle_exactly(a, b, c) }
+    let inside = is_inside(Angle::between(a - c, b - c), Angle::between(b, a));
+    if inside.is_sure { inside.is_positive } else { in_circle_exactly(a, b, c) }
 }
 
+/// [`in_circle`] in integers.
 #[cold]
-fn in_circle_exactly(a: DVec2, b: DVec2, c: DVec2) -> bool {
+pub fn in_circle_exactly(a: DVec2, b: DVec2, c: DVec2) -> bool {
     let points = [Units::new(a), Units::new(b), Units::new(c)];
     let [a, b, c] = points;
     let weights = [b.cross(c), c.cross(a), a.cross(b)];

@@ -78,7 +78,9 @@ impl Mesh {
     /// Gives vertex v the number `number[v]`.
     fn renumber(&mut self, number: &[u32]) {
         for face in &mut self.faces {
-            face.vertex = face.vertex.map(|v| number[v as usize]);
+            for corner in 0..3 {
+                face.set_vertex(corner, number[face.vertex(corner) as usize]);
+            }
         }
         let position = self.position.clone();
         let outgoing = std::mem::replace(&mut self.outgoing, vec![Edge::NONE; number.len()]);

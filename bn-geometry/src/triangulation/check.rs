@@ -43,15 +43,15 @@ impl Mesh {
     fn check_face(&self, id: u32) {
         let face = self.face(id);
         let corners = self.corners(face);
-        assert_eq!(face.frame.shift(0).vector(), bn_core::DVec2::ZERO, "frame of face {id}");
+        assert_eq!(face.frame().shift(0).vector(), bn_core::DVec2::ZERO, "frame of face {id}");
         let area = cross(corners[1] - corners[0], corners[2] - corners[0]);
         assert!(area > 0.0, "face {id} has area {area}");
         for c in 0..3 {
-            let (e, t) = (Edge::new(id, c), face.twin[c]);
+            let (e, t) = (Edge::new(id, c), face.twin(c));
             assert!(t.corner() < 3 && self.face(t.face()).is_alive(), "{e:?} borders on nothing");
             assert_eq!(self.twin(t), e, "the twin of the twin of {e:?}");
             assert_ne!(t.face(), id, "face {id} is its own neighbour");
-            assert_eq!(face.vertex[next(c)], self.origin(t), "the end of {e:?}");
+            assert_eq!(face.vertex(next(c)), self.origin(t), "the end of {e:?}");
             let there = self.face(t.face());
             let side = self.side(there, next(t.corner()), t.corner());
             assert_eq!(side, self.side(face, c, next(c)), "{e:?} and its twin differ");

@@ -23,16 +23,18 @@ impl FaceId {
     }
 }
 
-/// The corner that follows `corner` counter-clockwise.
+/// The corner that follows `corner` counter-clockwise: 0 → 1 → 2 → 0.
+///
+/// A table in a number: results below 4 need no check as indices of the arrays of [`Face`].
 #[inline]
 pub const fn next(corner: usize) -> usize {
-    if corner == 2 { 0 } else { corner + 1 }
+    0b00_10_01 >> (2 * corner) & 3
 }
 
-/// The corner that precedes `corner`.
+/// The corner that precedes `corner`: 0 → 2 → 1 → 0.
 #[inline]
 pub const fn previous(corner: usize) -> usize {
-    if corner == 0 { 2 } else { corner - 1 }
+    0b01_00_10 >> (2 * corner) & 3
 }
 
 /// A half-edge: side `corner` of a face, from that corner to the next, face to its left.
@@ -98,20 +100,22 @@ impl Shift {
     }
 }
 
-/// Which copies of its vertices a face connects, in the frame where the first one is not shifted.
+/// Which copies of its vertices a face connects, in the frame where the first one is not shifted:
+/// the shifts of the second and the third.
 ///
 /// All zero for the faces that don't cross the seam of the unit square: nearly all of them, so
 /// one comparison spares the arithmetic.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Frame([Shift; 3]);
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame(u32);
 
 impl Frame {
-    pub const ZERO: Self = Self([Shift::ZERO; 3]);
+    pub const ZERO: Self = Self(0);
 
     /// The frame of three shifts that are relative to any one copy of the square.
-    #[inline]
     pub fn new(shifts: [Shift; 3]) -> Self {
-        Self(shifts.map(|shift| shift.minus(shifts[0])))
+        let (second, third) = (shifts[1].minus(shifts[0]), shifts[2].minus(shifts[0]));
+        let bytes = [second.x, second.y, third.x, third.y].map(i8::cast_unsigned);
+        Self(u32::from_le_bytes(bytes))
     }
 
     #[inline]
@@ -119,9 +123,13 @@ impl Frame {
         self == Self::ZERO
     }
 
-    #[inline]
     pub fn shift(self, corner: usize) -> Shift {
-        self.0[corner]
+        let [x1, y1, x2, y2] = self.0.to_le_bytes().map(u8::cast_signed);
+        match corner {
+            0 => Shift::ZERO,
+            1 => Shift { x: x1, y: y1 },
+            _ => Shift { x: x2, y: y2 },
+        }
     }
 }
 
@@ -130,18 +138,72 @@ impl Frame {
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct Face {
-    pub vertex: [u32; 3],
-    pub twin: [Edge; 3],
-    pub frame: Frame,
+    /// Three vertices and the frame. Arrays of four take a corner of two bits without a check.
+    vertex: [u32; 4],
+    /// Three half-edges, and the vertex for which an insertion in progress has claimed the face.
+    twin: [Edge; 4],
 }
 
 impl Face {
     /// The record of a face that is no longer part of the mesh.
-    pub const DEAD: Self = Self { vertex: [NONE; 3], twin: [Edge::NONE; 3], frame: Frame::ZERO };
+    pub const DEAD: Self = Self { vertex: [NONE; 4], twin: [Edge::NONE; 4] };
+
+    #[inline]
+    pub fn new(vertices: [u32; 3], twins: [Edge; 3], frame: Frame) -> Self {
+        let [a, b, c] = vertices;
+        let [p, q, r] = twins;
+        Self { vertex: [a, b, c, frame.0], twin: [p, q, r, Edge::NONE] }
+    }
 
     #[inline]
     pub fn is_alive(&self) -> bool {
         self.vertex[0] != NONE
+    }
+
+    #[inline]
+    pub fn vertices(&self) -> [u32; 3] {
+        let [a, b, c, _] = self.vertex;
+        [a, b, c]
+    }
+
+    #[inline]
+    pub fn vertex(&self, corner: usize) -> u32 {
+        self.vertex[corner & 3]
+    }
+
+    #[inline]
+    pub fn set_vertex(&mut self, corner: usize, vertex: u32) {
+        self.vertex[corner & 3] = vertex;
+    }
+
+    #[inline]
+    pub fn twin(&self, corner: usize) -> Edge {
+        self.twin[corner & 3]
+    }
+
+    #[inline]
+    pub fn set_twin(&mut self, corner: usize, twin: Edge) {
+        self.twin[corner & 3] = twin;
+    }
+
+    #[inline]
+    pub fn claimant(&self) -> u32 {
+        self.twin[3].0
+    }
+
+    #[inline]
+    pub fn claim(&mut self, vertex: u32) {
+        self.twin[3].0 = vertex;
+    }
+
+    #[inline]
+    pub fn frame(&self) -> Frame {
+        Frame(self.vertex[3])
+    }
+
+    #[inline]
+    pub fn set_frame(&mut self, frame: Frame) {
+        self.vertex[3] = frame.0;
     }
 }
 

@@ -1,42 +1,59 @@
-//! Insertion: split the face that holds the new vertex and flip what is no longer Delaunay.
+//! Insertion: the faces whose circles hold the new vertex make room for its star
+//! (Bowyer 1981, Watson 1981).
 
 use bn_core::DVec2;
 
 use super::face::{Edge, Face, FaceId, Frame, Shift, next, previous};
-use super::locate::Place;
+use super::locate::{Located, Place};
 use super::mesh::Mesh;
-use crate::predicates::in_circle;
+use super::polygon::{StarCorner, StarPolygon};
+use crate::predicates::{Angle, in_circle, in_circle_exactly, is_inside};
+
+/// A half-edge that borders on the cavity from outside, still to be looked across.
+#[derive(Clone, Copy, Debug)]
+pub struct Border {
+    outer: Edge,
+    /// Where the side ends that has the cavity to its left, seen from the new vertex. It starts
+    /// where the one before it ends.
+    to: DVec2,
+}
 
 impl Mesh {
     /// Adds `vertex` at `p`, a point of the coordinate grid, seeking its place from face `start`.
     /// Returns the vertex that is there already, if one is; then nothing changes.
-    ///
-    /// The numbers below `vertex` are absent or present as before; `vertex` must be absent.
     pub fn insert(&mut self, vertex: u32, p: DVec2, start: u32) -> Option<u32> {
         debug_assert!(!self.has_vertex(vertex), "vertex {vertex} is there already");
+        self.changed.clear();
         if self.face_count() == 0 {
-            self.reserve_vertex(vertex);
-            self.position[vertex as usize] = p;
+            self.place_vertex(vertex, p);
             self.insert_first(vertex);
             return None;
         }
-        let found = self.walk(start, p);
-        let (face, side) = match found.place {
-            Place::Vertex(at) => return Some(at),
-            Place::Edge(e) => (e.face(), Some(e.corner())),
-            Place::Face(face) => (face, None),
+        let (face, shift) = match self.conflict(start, p) {
+            Some(shift) => (start, shift),
+            None => match self.walk(start, p) {
+                Located { place: Place::Vertex(at), .. } => return Some(at),
+                Located { place: Place::Edge(e), shift } => (e.face(), shift),
+                Located { place: Place::Face(face), shift } => (face, shift),
+            },
         };
-        self.reserve_vertex(vertex);
-        self.position[vertex as usize] = p;
-        self.changed.clear();
-        let link = self.split(face, vertex, found.shift);
-        if let Some(side) = side {
-            // The face on this side is flat: its two neighbours merge across it.
-            self.flip(link[side]);
+        self.place_vertex(vertex, p);
+        let mut star = std::mem::take(&mut self.star);
+        if self.gather_cavity(vertex, face, p + shift.vector(), &mut star) {
+            star.is_whole &= shift == Shift::ZERO;
+            self.fill_cavity(vertex, &mut star);
+        } else {
+            self.release(&star.faces);
+            self.insert_by_flips(vertex);
         }
-        self.legalize_star(vertex, link[0]);
+        self.star = star;
         self.last = self.outgoing[vertex as usize].face();
         None
+    }
+
+    fn place_vertex(&mut self, vertex: u32, p: DVec2) {
+        self.reserve_vertex(vertex);
+        self.position[vertex as usize] = p;
     }
 
     /// The mesh of one vertex: the unit square, cut along its second diagonal.
@@ -44,89 +61,127 @@ impl Mesh {
         self.clear();
         let at = |x, y| Shift { x, y };
         let edge = Edge::new;
-        self.faces.push(Face {
-            vertex: [vertex; 3],
-            twin: [edge(1, 1), edge(1, 2), edge(1, 0)],
-            frame: Frame::new([at(0, 0), at(1, 0), at(0, 1)]),
-        });
-        self.faces.push(Face {
-            vertex: [vertex; 3],
-            twin: [edge(0, 2), edge(0, 0), edge(0, 1)],
-            frame: Frame::new([at(1, 0), at(1, 1), at(0, 1)]),
-        });
+        self.faces.extend([
+            Face::new(
+                [vertex; 3],
+                [edge(1, 1), edge(1, 2), edge(1, 0)],
+                Frame::new([at(0, 0), at(1, 0), at(0, 1)]),
+            ),
+            Face::new(
+                [vertex; 3],
+                [edge(0, 2), edge(0, 0), edge(0, 1)],
+                Frame::new([at(1, 0), at(1, 1), at(0, 1)]),
+            ),
+        ]);
         self.outgoing[vertex as usize] = edge(0, 0);
         self.changed.extend([FaceId(0), FaceId(1)]);
         self.last = 0;
     }
 
-    /// Connects `vertex`, the copy of it by `shift` in the frame of `face`, to the corners.
-    /// Returns the sides of the former face; each has the vertex opposite.
-    fn split(&mut self, face: u32, vertex: u32, shift: Shift) -> [Edge; 3] {
-        let old = *self.face(face);
-        let ids = [face, self.new_face(), self.new_face()];
-        let whole = old.frame.is_zero() && shift == Shift::ZERO;
-        for (c, &id) in ids.iter().enumerate() {
-            let (n, p) = (next(c), previous(c));
-            let shifts = [old.frame.shift(c), old.frame.shift(n), shift];
-            self.faces[id as usize] = Face {
-                vertex: [old.vertex[c], old.vertex[n], vertex],
-                twin: [old.twin[c], Edge::new(ids[n], 2), Edge::new(ids[p], 1)],
-                frame: if whole { Frame::ZERO } else { Frame::new(shifts) },
-            };
-        }
-        for (c, &id) in ids.iter().enumerate() {
-            let side = Edge::new(id, 0);
-            self.glue(side, old.twin[c]);
-            self.outgoing[old.vertex[c] as usize] = side;
-        }
-        self.outgoing[vertex as usize] = Edge::new(face, 2);
-        ids.map(|id| Edge::new(id, 0))
+    /// The copy of `p` that lies inside the circle of `face`, if the nearest one does.
+    fn conflict(&self, face: u32, p: DVec2) -> Option<Shift> {
+        let shift = self.nearest_shift(face, p);
+        let [a, b, c] = self.corners(self.face(face));
+        let q = p + shift.vector();
+        in_circle(a - q, b - q, c - q).then_some(shift)
     }
 
-    /// Flips the sides opposite to a new vertex until its star is Delaunay; `first` is one of them.
+    /// Claims the faces whose circles hold the new vertex, which is at `q` in the frame of one of
+    /// them, `face`. They form a polygon that `q` sees all of, with no vertex inside.
     ///
-    /// Goes once round the star, with displacements from the vertex, which know no frame.
-    fn legalize_star(&mut self, vertex: u32, first: Edge) {
-        let mut e = first;
-        let face = self.face(e.face());
-        let mut from = self.side(face, previous(e.corner()), e.corner());
-        let mut to = self.side(face, previous(e.corner()), next(e.corner()));
-        loop {
-            let t = self.twin(e);
-            if self.origin(t.previous()) == vertex {
-                return self.legalize_touching_star(vertex);
-            }
-            let apex = from + self.to_apex(t);
-            if in_circle(to, from, apex) {
-                self.flip(e);
-                to = apex;
-                continue;
-            }
-            self.changed.push(FaceId(e.face()));
-            e = self.twin(e.next()).next();
-            if e == first {
-                return;
+    /// False if the polygon meets its own copy (few points, or wide holes): then the copies of
+    /// the new vertex matter to each other.
+    fn gather_cavity(&mut self, vertex: u32, face: u32, q: DVec2, star: &mut StarPolygon) -> bool {
+        star.clear();
+        self.claim(face, vertex, star);
+        let record = *self.face(face);
+        let [start, b, c] = self.corners(&record).map(|corner| corner - q);
+        self.borders.clear();
+        self.borders.extend([
+            Border { outer: record.twin(2), to: start },
+            Border { outer: record.twin(1), to: c },
+            Border { outer: record.twin(0), to: b },
+        ]);
+        let mut from = start;
+        while let Some(Border { mut outer, mut to }) = self.borders.pop() {
+            // Sides are looked across in counter-clockwise order.
+            loop {
+                let there = self.face(outer.face());
+                if there.claimant() == vertex {
+                    return false;
+                }
+                let (n, p) = (next(outer.corner()), previous(outer.corner()));
+                let apex = from + self.side(there, n, p);
+                if !sees_across(from, to, apex) {
+                    let vertex = there.vertex(n);
+                    let corner = StarCorner { position: from, vertex, outer, inner: Edge::NONE };
+                    star.corners.push(corner);
+                    break;
+                }
+                let (beyond_n, beyond_p) = (there.twin(n), there.twin(p));
+                self.claim(outer.face(), vertex, star);
+                self.borders.push(Border { outer: beyond_p, to });
+                (outer, to) = (beyond_n, apex);
             }
             from = to;
-            to = from + self.side(self.face(e.face()), e.corner(), next(e.corner()));
+        }
+        let claimed = |corner: &StarCorner| self.face(corner.outer.face()).claimant() == vertex;
+        !star.corners.iter().any(claimed)
+    }
+
+    #[inline]
+    fn claim(&mut self, face: u32, vertex: u32, star: &mut StarPolygon) {
+        let record = &mut self.faces[face as usize];
+        record.claim(vertex);
+        star.is_whole &= record.frame().is_zero();
+        star.faces.push(face);
+    }
+
+    #[cold]
+    fn release(&mut self, faces: &[u32]) {
+        for &face in faces {
+            self.faces[face as usize].claim(super::face::NONE);
         }
     }
 
-    /// The general case: where the star of a vertex meets that of its own copy (few points, or
-    /// wide holes), edges at the vertex may be illegal as well.
-    #[cold]
-    fn legalize_touching_star(&mut self, vertex: u32) {
-        self.suspects.clear();
-        let first = self.outgoing[vertex as usize];
-        let mut e = first;
-        loop {
-            self.suspects.extend([e, e.next()]);
-            self.changed.push(FaceId(e.face()));
-            e = self.turn(e);
-            if e == first {
-                break;
-            }
+    /// Connects the new vertex to all corners of the polygon around it.
+    fn fill_cavity(&mut self, vertex: u32, star: &mut StarPolygon) {
+        star.faces.extend([self.new_face(), self.new_face()]);
+        let degree = star.corners.len();
+        debug_assert_eq!(star.faces.len(), degree, "two faces more than before");
+        let mut corner = star.corners[degree - 1];
+        let mut face = star.faces[degree - 1];
+        let mut previous = star.faces[degree - 2];
+        for (&next_corner, &next_face) in star.corners.iter().zip(&star.faces) {
+            let frame = if star.is_whole {
+                Frame::ZERO
+            } else {
+                self.spoke_frame(vertex, &corner, &next_corner)
+            };
+            let twins = [corner.outer, Edge::new(next_face, 2), Edge::new(previous, 1)];
+            let vertices = [corner.vertex, next_corner.vertex, vertex];
+            self.faces[face as usize] = Face::new(vertices, twins, frame);
+            let side = Edge::new(face, 0);
+            self.faces[corner.outer.face() as usize].set_twin(corner.outer.corner(), side);
+            self.outgoing[corner.vertex as usize] = side;
+            self.changed.push(FaceId(face));
+            (corner, previous, face) = (next_corner, face, next_face);
         }
-        self.restore_delaunay();
+        self.outgoing[vertex as usize] = Edge::new(face, 2);
     }
+
+    /// The frame of the face of two corners of a polygon and its centre.
+    #[cold]
+    fn spoke_frame(&self, center: u32, from: &StarCorner, to: &StarCorner) -> Frame {
+        let p = self.position[center as usize];
+        Frame::new([self.corner_shift(p, from), self.corner_shift(p, to), Shift::ZERO])
+    }
+}
+
+/// Whether the origin, to the left of the edge from `from` to `to`, lies inside the circle of
+/// the face on its other side, whose third corner is `apex`.
+#[inline]
+fn sees_across(from: DVec2, to: DVec2, apex: DVec2) -> bool {
+    let inside = is_inside(Angle::between(from, to), Angle::between(to - apex, from - apex));
+    if inside.is_sure { inside.is_positive } else { in_circle_exactly(to, from, apex) }
 }

@@ -47,10 +47,10 @@ impl Triangulation {
         let faces = (0..).zip(&self.mesh.faces).filter(|(_, face)| face.is_alive());
         faces.flat_map(|(id, face)| {
             // Of two faces the one of lower id names the edge.
-            let owned = (0..3).filter(move |&c| id < face.twin[c].face());
+            let owned = (0..3).filter(move |&c| id < face.twin(c).face());
             owned.map(|c| Edge {
-                from: face.vertex[c] as usize,
-                to: face.vertex[next(c)] as usize,
+                from: face.vertex(c) as usize,
+                to: face.vertex(next(c)) as usize,
                 vector: self.mesh.side(face, c, next(c)),
             })
         })
@@ -104,7 +104,7 @@ impl Triangulation {
 impl Mesh {
     fn view(&self, id: FaceId) -> Face {
         let face = self.face(id.0);
-        let vertices = face.vertex.map(|v| v as usize);
+        let vertices = face.vertices().map(|v| v as usize);
         Face { id, vertices, corners: self.corners(face) }
     }
 }
@@ -142,7 +142,7 @@ impl Iterator for Neighbors<'_> {
         let e = self.around.next()?;
         let face = self.around.mesh.face(e.face());
         let (c, n) = (e.corner(), next(e.corner()));
-        Some((face.vertex[n] as usize, self.around.mesh.side(face, c, n)))
+        Some((face.vertex(n) as usize, self.around.mesh.side(face, c, n)))
     }
 }
 

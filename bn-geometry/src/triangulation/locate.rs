@@ -52,7 +52,7 @@ impl Mesh {
                 return Located { place: self.place_in(id, on_side), shift };
             };
             let e = Edge::new(id, c);
-            let t = face.twin[c];
+            let t = face.twin(c);
             shift = shift.minus(self.shift_across(e));
             id = t.face();
             entry = Some(t.corner());
@@ -60,8 +60,12 @@ impl Mesh {
     }
 
     /// The copy of `p` nearest to the first corner of `face`, which is not shifted.
-    fn nearest_shift(&self, face: u32, p: DVec2) -> Shift {
-        let d = self.position[self.face(face).vertex[0] as usize] - p;
+    #[inline]
+    pub(super) fn nearest_shift(&self, face: u32, p: DVec2) -> Shift {
+        let d = self.position[self.face(face).vertex(0) as usize] - p;
+        if d.x.abs() <= 0.5 && d.y.abs() <= 0.5 {
+            return Shift::ZERO;
+        }
         let nearest = |d: f64| i8::from(d > 0.5) - i8::from(d < -0.5);
         Shift { x: nearest(d.x), y: nearest(d.y) }
     }
@@ -73,9 +77,9 @@ impl Mesh {
             [false, true, false] => Place::Edge(Edge::new(face, 1)),
             [false, false, true] => Place::Edge(Edge::new(face, 2)),
             // Two sides meet in the corner where the second starts.
-            [true, true, _] => Place::Vertex(self.face(face).vertex[1]),
-            [_, true, true] => Place::Vertex(self.face(face).vertex[2]),
-            [true, _, true] => Place::Vertex(self.face(face).vertex[0]),
+            [true, true, _] => Place::Vertex(self.face(face).vertex(1)),
+            [_, true, true] => Place::Vertex(self.face(face).vertex(2)),
+            [true, _, true] => Place::Vertex(self.face(face).vertex(0)),
         }
     }
 }
@@ -134,7 +138,7 @@ impl Hints {
             let face = self.face[self.index((x + dx) % self.side, (y + dy) % self.side)];
             let record = mesh.faces.get(face as usize).filter(|face| face.is_alive());
             let distance = record.map_or(f64::INFINITY, |face| {
-                let corner = mesh.position[face.vertex[0] as usize];
+                let corner = mesh.position[face.vertex(0) as usize];
                 torus::delta(corner, p).abs().max_element()
             });
             if distance <= near {

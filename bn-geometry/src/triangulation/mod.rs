@@ -8,7 +8,9 @@ mod insert;
 mod iter;
 mod locate;
 mod mesh;
+mod polygon;
 mod remove;
+mod touching;
 
 use bn_core::{DVec2, PointSet, torus};
 
@@ -16,7 +18,7 @@ use self::coincident::{Coincidences, Departure};
 use self::face::Face as FaceRecord;
 use self::locate::{Hints, Place};
 use self::mesh::Mesh;
-use crate::circle::{Circle, circumcircle};
+use crate::circle::{Circle, circumcircle, circumradius_squared};
 use crate::predicates::snap;
 
 pub use self::face::FaceId;
@@ -211,6 +213,13 @@ impl Triangulation {
         let record = self.mesh.face(face.0);
         assert!(record.is_alive(), "{face:?} is not part of the triangulation");
         circumcircle(self.mesh.corners(record))
+    }
+
+    /// The squared radius of a face's circle; none if there is no such face.
+    #[inline]
+    pub fn circumradius_squared(&self, face: FaceId) -> Option<f64> {
+        let record = self.mesh.faces.get(face.index()).filter(|record| record.is_alive())?;
+        Some(circumradius_squared(self.mesh.corners(record)))
     }
 
     #[inline]
