@@ -59,7 +59,7 @@ impl EmptyCircles {
         triangulation: &Triangulation,
         faces: impl Iterator<Item = FaceId> + Clone,
     ) {
-        self.radius_squared.set(faces.map(FaceId::index), |index| {
+        self.radius_squared.set(&faces.map(FaceId::index), |index| {
             triangulation.circumradius_squared(FaceId::new(index)).unwrap_or(0.0)
         });
     }

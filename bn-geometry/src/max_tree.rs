@@ -48,7 +48,7 @@ impl MaxTree {
     ///
     /// Goes up level by level, not number by number: that is independent work on each level.
     #[inline]
-    pub fn set<I>(&mut self, indices: I, value: impl Fn(usize) -> f64)
+    pub fn set<I>(&mut self, indices: &I, value: impl Fn(usize) -> f64)
     where
         I: Iterator<Item = usize> + Clone,
     {
@@ -118,7 +118,7 @@ mod tests {
                 for &(index, value) in &batch {
                     list[index.index(len)] = f64::from(value);
                 }
-                tree.set(batch.iter().map(|(index, _)| index.index(len)), |index| list[index]);
+                tree.set(&batch.iter().map(|(index, _)| index.index(len)), |index| list[index]);
                 prop_assert!((0..len).all(|index| tree.get(index) == list[index]));
                 let largest = list.iter().copied().fold(0.0, f64::max);
                 let first = list.iter().position(|&x| x == largest).expect("not empty");

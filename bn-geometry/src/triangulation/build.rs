@@ -3,8 +3,7 @@
 use bn_core::DVec2;
 
 use super::coincident::Coincidences;
-use super::face::Edge;
-use super::mesh::Mesh;
+use super::mesh::{Mesh, Scratch, Vertex};
 use crate::hilbert;
 use crate::predicates::snap;
 
@@ -24,10 +23,10 @@ pub fn build(points: &[DVec2]) -> (Mesh, Coincidences) {
     curve.sort_unstable();
     let mut mesh = Mesh::default();
     mesh.reserve(points.len());
-    let mut shared = Vec::new();
+    let (mut shared, mut scratch) = (Vec::new(), Scratch::default());
     for rank in insertion_order(curve.len()) {
         let p = snap(points[curve[rank].1 as usize]);
-        if let Some(vertex) = mesh.insert(rank as u32, p, mesh.last) {
+        if let Some(vertex) = mesh.insert(rank as u32, p, mesh.last, &mut scratch) {
             shared.push((vertex, rank as u32));
         }
     }
@@ -71,8 +70,7 @@ fn name_coincident(number: &mut [u32], mut shared: Vec<(u32, u32)>) -> Coinciden
 impl Mesh {
     fn reserve(&mut self, vertices: usize) {
         self.faces.reserve(2 * vertices);
-        self.position.resize(vertices, DVec2::ZERO);
-        self.outgoing.resize(vertices, Edge::NONE);
+        self.vertices.resize(vertices, Vertex::ABSENT);
     }
 
     /// Gives vertex v the number `number[v]`.
@@ -82,12 +80,11 @@ impl Mesh {
                 face.set_vertex(corner, number[face.vertex(corner) as usize]);
             }
         }
-        let position = self.position.clone();
-        let outgoing = std::mem::replace(&mut self.outgoing, vec![Edge::NONE; number.len()]);
-        for (v, &new) in number.iter().enumerate() {
-            if outgoing[v] != Edge::NONE {
-                self.position[new as usize] = position[v];
-                self.outgoing[new as usize] = outgoing[v];
+        let renumbered = vec![Vertex::ABSENT; number.len()];
+        let vertices = std::mem::replace(&mut self.vertices, renumbered);
+        for (vertex, &new) in vertices.into_iter().zip(number) {
+            if vertex.is_present() {
+                self.vertices[new as usize] = vertex;
             }
         }
     }

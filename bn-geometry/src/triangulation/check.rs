@@ -22,11 +22,12 @@ impl Triangulation {
                 self.mesh.check_face(id);
             }
         }
-        for vertex in self.mesh.vertices() {
+        for vertex in self.mesh.vertex_numbers() {
             self.mesh.check_vertex(vertex);
             assert_eq!(self.coincidences.vertex(vertex), vertex, "vertices stand for themselves");
         }
-        let degrees: usize = self.mesh.vertices().map(|v| self.neighbors(v as usize).count()).sum();
+        let degrees: usize =
+            self.mesh.vertex_numbers().map(|v| self.neighbors(v as usize).count()).sum();
         assert_eq!(degrees, 3 * self.face_count(), "half-edges that belong to no vertex");
     }
 }
@@ -36,7 +37,7 @@ impl Mesh {
         let alive = self.faces.iter().filter(|face| face.is_alive()).count();
         assert_eq!(alive, self.face_count(), "living faces");
         assert!(self.free.iter().all(|&id| !self.face(id).is_alive()), "a living face is free");
-        assert_eq!(2 * self.vertices().count(), alive, "Euler: n vertices, 2n faces");
+        assert_eq!(2 * self.vertex_numbers().count(), alive, "Euler: n vertices, 2n faces");
         assert!(alive == 0 || self.face(self.last).is_alive(), "searches start at a dead face");
     }
 
@@ -60,9 +61,9 @@ impl Mesh {
     }
 
     fn check_vertex(&self, vertex: u32) {
-        let p = self.position[vertex as usize];
+        let p = self.position(vertex);
         assert!(torus::contains(p) && p == crate::predicates::snap(p), "{p} is off the grid");
-        let e = self.outgoing[vertex as usize];
+        let e = self.outgoing(vertex);
         assert_eq!(self.origin(e), vertex, "{e:?} starts elsewhere");
     }
 }

@@ -5,7 +5,7 @@ use bn_core::DVec2;
 
 use super::face::{Edge, Face, FaceId, Frame, Shift, next, previous};
 use super::locate::{Located, Place};
-use super::mesh::Mesh;
+use super::mesh::{Mesh, Scratch};
 use super::polygon::{StarCorner, StarPolygon};
 use crate::predicates::{Angle, in_circle, in_circle_exactly, is_inside};
 
@@ -21,7 +21,13 @@ pub struct Border {
 impl Mesh {
     /// Adds `vertex` at `p`, a point of the coordinate grid, seeking its place from face `start`.
     /// Returns the vertex that is there already, if one is; then nothing changes.
-    pub fn insert(&mut self, vertex: u32, p: DVec2, start: u32) -> Option<u32> {
+    pub fn insert(
+        &mut self,
+        vertex: u32,
+        p: DVec2,
+        start: u32,
+        scratch: &mut Scratch,
+    ) -> Option<u32> {
         debug_assert!(!self.has_vertex(vertex), "vertex {vertex} is there already");
         self.changed.clear();
         if self.face_count() == 0 {
@@ -38,22 +44,20 @@ impl Mesh {
             },
         };
         self.place_vertex(vertex, p);
-        let mut star = std::mem::take(&mut self.star);
-        if self.gather_cavity(vertex, face, p + shift.vector(), &mut star) {
-            star.is_whole &= shift == Shift::ZERO;
-            self.fill_cavity(vertex, &mut star);
+        if self.gather_cavity(vertex, face, p + shift.vector(), scratch) {
+            scratch.star.is_whole &= shift == Shift::ZERO;
+            self.fill_cavity(vertex, &mut scratch.star);
         } else {
-            self.release(&star.faces);
-            self.insert_by_flips(vertex);
+            self.release(&scratch.star.faces);
+            self.insert_by_flips(vertex, &mut scratch.suspects);
         }
-        self.star = star;
-        self.last = self.outgoing[vertex as usize].face();
+        self.last = self.outgoing(vertex).face();
         None
     }
 
     fn place_vertex(&mut self, vertex: u32, p: DVec2) {
         self.reserve_vertex(vertex);
-        self.position[vertex as usize] = p;
+        self.vertices[vertex as usize].position = p;
     }
 
     /// The mesh of one vertex: the unit square, cut along its second diagonal.
@@ -73,7 +77,7 @@ impl Mesh {
                 Frame::new([at(1, 0), at(1, 1), at(0, 1)]),
             ),
         ]);
-        self.outgoing[vertex as usize] = edge(0, 0);
+        self.set_outgoing(vertex, edge(0, 0));
         self.changed.extend([FaceId(0), FaceId(1)]);
         self.last = 0;
     }
@@ -91,19 +95,20 @@ impl Mesh {
     ///
     /// False if the polygon meets its own copy (few points, or wide holes): then the copies of
     /// the new vertex matter to each other.
-    fn gather_cavity(&mut self, vertex: u32, face: u32, q: DVec2, star: &mut StarPolygon) -> bool {
+    fn gather_cavity(&mut self, vertex: u32, face: u32, q: DVec2, scratch: &mut Scratch) -> bool {
+        let Scratch { star, borders, .. } = scratch;
         star.clear();
         self.claim(face, vertex, star);
         let record = *self.face(face);
         let [start, b, c] = self.corners(&record).map(|corner| corner - q);
-        self.borders.clear();
-        self.borders.extend([
+        borders.clear();
+        borders.extend([
             Border { outer: record.twin(2), to: start },
             Border { outer: record.twin(1), to: c },
             Border { outer: record.twin(0), to: b },
         ]);
         let mut from = start;
-        while let Some(Border { mut outer, mut to }) = self.borders.pop() {
+        while let Some(Border { mut outer, mut to }) = borders.pop() {
             // Sides are looked across in counter-clockwise order.
             loop {
                 let there = self.face(outer.face());
@@ -120,7 +125,7 @@ impl Mesh {
                 }
                 let (beyond_n, beyond_p) = (there.twin(n), there.twin(p));
                 self.claim(outer.face(), vertex, star);
-                self.borders.push(Border { outer: beyond_p, to });
+                borders.push(Border { outer: beyond_p, to });
                 (outer, to) = (beyond_n, apex);
             }
             from = to;
@@ -163,17 +168,17 @@ impl Mesh {
             self.faces[face as usize] = Face::new(vertices, twins, frame);
             let side = Edge::new(face, 0);
             self.faces[corner.outer.face() as usize].set_twin(corner.outer.corner(), side);
-            self.outgoing[corner.vertex as usize] = side;
+            self.set_outgoing(corner.vertex, side);
             self.changed.push(FaceId(face));
             (corner, previous, face) = (next_corner, face, next_face);
         }
-        self.outgoing[vertex as usize] = Edge::new(face, 2);
+        self.set_outgoing(vertex, Edge::new(face, 2));
     }
 
     /// The frame of the face of two corners of a polygon and its centre.
     #[cold]
     fn spoke_frame(&self, center: u32, from: &StarCorner, to: &StarCorner) -> Frame {
-        let p = self.position[center as usize];
+        let p = self.position(center);
         Frame::new([self.corner_shift(p, from), self.corner_shift(p, to), Shift::ZERO])
     }
 }

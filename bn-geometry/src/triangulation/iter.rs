@@ -96,7 +96,7 @@ impl Triangulation {
     }
 
     fn around(&self, index: usize) -> Around<'_> {
-        let first = self.mesh.outgoing[self.vertex(index) as usize];
+        let first = self.mesh.outgoing(self.vertex(index));
         Around { mesh: &self.mesh, first, next: Some(first) }
     }
 }

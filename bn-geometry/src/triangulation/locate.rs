@@ -62,7 +62,7 @@ impl Mesh {
     /// The copy of `p` nearest to the first corner of `face`, which is not shifted.
     #[inline]
     pub(super) fn nearest_shift(&self, face: u32, p: DVec2) -> Shift {
-        let d = self.position[self.face(face).vertex(0) as usize] - p;
+        let d = self.position(self.face(face).vertex(0)) - p;
         if d.x.abs() <= 0.5 && d.y.abs() <= 0.5 {
             return Shift::ZERO;
         }
@@ -113,8 +113,8 @@ impl Hints {
         self.side = ((mesh.vertex_count() / Self::LOAD) as f64).sqrt().ceil().max(1.0) as usize;
         self.face.clear();
         self.face.resize(self.side * self.side, NONE);
-        for v in mesh.vertices() {
-            self.set(mesh.position[v as usize], mesh.outgoing[v as usize].face());
+        for vertex in mesh.vertices.iter().filter(|vertex| vertex.is_present()) {
+            self.set(vertex.position, vertex.outgoing.face());
         }
         let mut near = mesh.last;
         for face in &mut self.face {
@@ -138,7 +138,7 @@ impl Hints {
             let face = self.face[self.index((x + dx) % self.side, (y + dy) % self.side)];
             let record = mesh.faces.get(face as usize).filter(|face| face.is_alive());
             let distance = record.map_or(f64::INFINITY, |face| {
-                let corner = mesh.position[face.vertex(0) as usize];
+                let corner = mesh.position(face.vertex(0));
                 torus::delta(corner, p).abs().max_element()
             });
             if distance <= near {

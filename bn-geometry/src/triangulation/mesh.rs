@@ -8,6 +8,34 @@ use super::polygon::StarPolygon;
 use super::remove::Chain;
 use crate::predicates::in_circle;
 
+/// Memory that insertions and removals use again.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    pub(super) star: StarPolygon,
+    pub(super) borders: Vec<Border>,
+    pub(super) chains: Vec<Chain>,
+    pub(super) suspects: Vec<Edge>,
+}
+
+/// A vertex, or room for one. Half a cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub struct Vertex {
+    /// Its place on the coordinate grid in [0, 1)².
+    pub position: DVec2,
+    /// A half-edge that starts there; none if there is no such vertex.
+    pub outgoing: Edge,
+}
+
+impl Vertex {
+    pub const ABSENT: Self = Self { position: DVec2::ZERO, outgoing: Edge::NONE };
+
+    #[inline]
+    pub fn is_present(&self) -> bool {
+        self.outgoing != Edge::NONE
+    }
+}
+
 /// A triangulation of the torus by faces whose sides are glued in pairs.
 ///
 /// The gluing may join a vertex or a face's neighbour to itself in several ways (a Δ-complex), so
@@ -18,19 +46,11 @@ pub struct Mesh {
     /// Faces in use and dead ones, which are listed in `free`.
     pub faces: Vec<Face>,
     pub free: Vec<u32>,
-    /// Place of each vertex on the coordinate grid in [0, 1)²; meaningless for absent vertices.
-    pub position: Vec<DVec2>,
-    /// A half-edge that starts at the vertex, or none for absent vertices.
-    pub outgoing: Vec<Edge>,
+    pub vertices: Vec<Vertex>,
     /// Faces made, altered or freed by the last insertion or removal.
     pub changed: Vec<FaceId>,
     /// Where a search starts that has no better place: a living face, unless there is none.
     pub last: u32,
-    // Memory that operations use again.
-    pub(super) star: StarPolygon,
-    pub(super) borders: Vec<Border>,
-    pub(super) chains: Vec<Chain>,
-    pub(super) suspects: Vec<Edge>,
 }
 
 impl Mesh {
@@ -43,12 +63,29 @@ impl Mesh {
     }
 
     pub fn has_vertex(&self, vertex: u32) -> bool {
-        self.outgoing.get(vertex as usize).is_some_and(|&e| e != Edge::NONE)
+        self.vertices.get(vertex as usize).is_some_and(Vertex::is_present)
     }
 
     /// The vertices that the mesh has, in order.
-    pub fn vertices(&self) -> impl Iterator<Item = u32> {
-        (0..self.outgoing.len() as u32).filter(|&v| self.has_vertex(v))
+    pub fn vertex_numbers(&self) -> impl Iterator<Item = u32> {
+        (0..).zip(&self.vertices).filter(|(_, vertex)| vertex.is_present()).map(|(v, _)| v)
+    }
+
+    /// Where a vertex is, in [0, 1)².
+    #[inline]
+    pub fn position(&self, vertex: u32) -> DVec2 {
+        self.vertices[vertex as usize].position
+    }
+
+    /// A half-edge that starts at a vertex.
+    #[inline]
+    pub fn outgoing(&self, vertex: u32) -> Edge {
+        self.vertices[vertex as usize].outgoing
+    }
+
+    #[inline]
+    pub fn set_outgoing(&mut self, vertex: u32, e: Edge) {
+        self.vertices[vertex as usize].outgoing = e;
     }
 
     #[inline]
@@ -76,7 +113,7 @@ impl Mesh {
     /// The places of a face's corners in its own frame.
     #[inline]
     pub fn corners(&self, face: &Face) -> [DVec2; 3] {
-        let [a, b, c] = face.vertices().map(|v| self.position[v as usize]);
+        let [a, b, c] = face.vertices().map(|v| self.position(v));
         if face.frame().is_zero() {
             [a, b, c]
         } else {
@@ -87,8 +124,8 @@ impl Mesh {
     /// The vector from a face's corner `from` to its corner `to`.
     #[inline]
     pub fn side(&self, face: &Face, from: usize, to: usize) -> DVec2 {
-        let p = self.position[face.vertex(from) as usize];
-        let q = self.position[face.vertex(to) as usize];
+        let p = self.position(face.vertex(from));
+        let q = self.position(face.vertex(to));
         if face.frame().is_zero() {
             q - p
         } else {
@@ -112,9 +149,8 @@ impl Mesh {
     /// Makes room for a vertex of this number.
     pub fn reserve_vertex(&mut self, vertex: u32) {
         let len = vertex as usize + 1;
-        if self.position.len() < len {
-            self.position.resize(len, DVec2::ZERO);
-            self.outgoing.resize(len, Edge::NONE);
+        if self.vertices.len() < len {
+            self.vertices.resize(len, Vertex::ABSENT);
         }
     }
 
@@ -142,9 +178,9 @@ impl Mesh {
     /// Calls the vertex `old` by the number `new`.
     pub fn rename(&mut self, old: u32, new: u32) {
         self.reserve_vertex(new);
-        self.position[new as usize] = self.position[old as usize];
-        let first = std::mem::replace(&mut self.outgoing[old as usize], Edge::NONE);
-        self.outgoing[new as usize] = first;
+        self.vertices[new as usize] = self.vertices[old as usize];
+        self.vertices[old as usize] = Vertex::ABSENT;
+        let first = self.outgoing(new);
         self.changed.clear();
         let mut e = first;
         loop {
@@ -163,7 +199,9 @@ impl Mesh {
         self.faces.clear();
         self.free.clear();
         self.changed.clear();
-        self.outgoing.fill(Edge::NONE);
+        for vertex in &mut self.vertices {
+            vertex.outgoing = Edge::NONE;
+        }
         self.last = NONE;
     }
 

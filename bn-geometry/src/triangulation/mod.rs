@@ -17,7 +17,7 @@ use bn_core::{DVec2, PointSet, torus};
 use self::coincident::{Coincidences, Departure};
 use self::face::Face as FaceRecord;
 use self::locate::{Hints, Place};
-use self::mesh::Mesh;
+use self::mesh::{Mesh, Scratch};
 use crate::circle::{Circle, circumcircle, circumradius_squared};
 use crate::predicates::snap;
 
@@ -47,6 +47,7 @@ pub struct Triangulation {
     mesh: Mesh,
     coincidences: Coincidences,
     hints: Hints,
+    scratch: Scratch,
 }
 
 /// Where a point lies in a triangulation.
@@ -64,9 +65,9 @@ impl Triangulation {
     /// The triangulation of all points of a set, indexed as there. O(n log n).
     pub fn new(set: &PointSet) -> Self {
         let (mesh, coincidences) = build::build(set.points());
-        let mut triangulation = Self { mesh, coincidences, hints: Hints::default() };
-        triangulation.hints.rebuild(&triangulation.mesh);
-        triangulation
+        let mut hints = Hints::default();
+        hints.rebuild(&mesh);
+        Self { mesh, coincidences, hints, scratch: Scratch::default() }
     }
 
     /// The triangulation of no point, to be filled by [`Triangulation::insert`].
@@ -109,7 +110,7 @@ impl Triangulation {
     /// If there is no such point.
     #[inline]
     pub fn position(&self, index: usize) -> DVec2 {
-        self.mesh.position[self.vertex(index) as usize]
+        self.mesh.position(self.vertex(index))
     }
 
     /// Adds point `index` at `p`. Amortised O(1) expected for points spread about evenly; memory
@@ -137,7 +138,7 @@ impl Triangulation {
         assert!(index < PointSet::MAX_POINTS, "index {index} is not below 2²⁹");
         assert!(!self.contains(index), "point {index} is in the triangulation already");
         let (point, p) = (index as u32, snap(p));
-        if let Some(vertex) = self.mesh.insert(point, p, start) {
+        if let Some(vertex) = self.mesh.insert(point, p, start, &mut self.scratch) {
             self.mesh.changed.clear();
             self.coincidences.join(point, vertex);
         } else if self.hints.is_too_coarse(self.mesh.vertex_count()) {
@@ -155,7 +156,7 @@ impl Triangulation {
     pub fn remove(&mut self, index: usize) {
         let vertex = self.vertex(index);
         match self.coincidences.leave(index as u32) {
-            Departure::Vertex => self.mesh.remove(vertex),
+            Departure::Vertex => self.mesh.remove(vertex, &mut self.scratch),
             Departure::Duplicate => self.mesh.changed.clear(),
             Departure::Heir(heir) => self.mesh.rename(vertex, heir),
         }
@@ -178,7 +179,7 @@ impl Triangulation {
 
     /// More than the index of any point: the length of a table of points.
     pub fn index_bound(&self) -> usize {
-        self.mesh.position.len().max(self.coincidences.index_bound())
+        self.mesh.vertices.len().max(self.coincidences.index_bound())
     }
 
     /// More than the index of any face: the length of a table of faces.

@@ -41,7 +41,7 @@ impl Mesh {
     /// Which copy a corner is of its vertex, relative to the centre at `center` in [0, 1)².
     pub(super) fn corner_shift(&self, center: DVec2, corner: &StarCorner) -> Shift {
         // Exact, and whole.
-        let shift = center + corner.position - self.position[corner.vertex as usize];
+        let shift = center + corner.position - self.position(corner.vertex);
         Shift { x: shift.x as i8, y: shift.y as i8 }
     }
 
@@ -49,7 +49,7 @@ impl Mesh {
     /// star is no polygon.
     pub(super) fn gather_star(&self, vertex: u32, star: &mut StarPolygon) -> bool {
         star.clear();
-        let first = self.outgoing[vertex as usize];
+        let first = self.outgoing(vertex);
         let mut e = first;
         loop {
             let face = self.face(e.face());

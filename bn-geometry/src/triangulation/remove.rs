@@ -1,7 +1,7 @@
 //! Removal: triangulate the star polygon that a vertex leaves behind.
 
 use super::face::{Edge, Face, FaceId, Frame};
-use super::mesh::Mesh;
+use super::mesh::{Mesh, Scratch};
 use super::polygon::{StarCorner, StarPolygon};
 use crate::predicates::{Angle, cross, in_circle_exactly, is_inside};
 
@@ -18,17 +18,15 @@ pub struct Chain {
 impl Mesh {
     /// Takes out `vertex`, which the mesh has. O(d²) for a vertex of degree d; O(n) where the
     /// vertex is its own neighbour, which needs an empty circle of radius ½.
-    pub fn remove(&mut self, vertex: u32) {
+    pub fn remove(&mut self, vertex: u32, scratch: &mut Scratch) {
         self.changed.clear();
-        let mut star = std::mem::take(&mut self.star);
-        if self.gather_star(vertex, &mut star) {
-            self.resolve_glued_sides(vertex, &mut star);
-            self.fill_star(vertex, &mut star);
-            self.outgoing[vertex as usize] = Edge::NONE;
+        if self.gather_star(vertex, &mut scratch.star) {
+            self.resolve_glued_sides(vertex, &mut scratch.star);
+            self.fill_star(vertex, &mut scratch.star, &mut scratch.chains);
+            self.set_outgoing(vertex, Edge::NONE);
         } else {
-            self.rebuild_without(vertex);
+            self.rebuild_without(vertex, scratch);
         }
-        self.star = star;
     }
 
     /// Where two sides of the polygon are glued to each other, `outer` becomes a reference to the
@@ -45,14 +43,15 @@ impl Mesh {
     }
 
     /// Replaces the d faces of the star by d − 2 others.
-    fn fill_star(&mut self, center: u32, star: &mut StarPolygon) {
+    fn fill_star(&mut self, center: u32, star: &mut StarPolygon, chains: &mut Vec<Chain>) {
         self.changed.extend(star.faces.iter().copied().map(FaceId));
         let degree = star.corners.len();
         let mut chain = Chain { first: 0, last: degree - 1, base: Edge::NONE };
-        self.chains.clear();
-        for &face in &star.faces[2..] {
-            self.fill_chain(center, &mut star.corners, star.is_whole, chain, face);
-            chain = self.chains.pop().unwrap_or(chain);
+        chains.clear();
+        for i in 2..degree {
+            let face = star.faces[i];
+            self.fill_chain(center, star, chains, chain, face);
+            chain = chains.pop().unwrap_or(chain);
         }
         for corner in &star.corners {
             let outer = match corner.outer.corner() {
@@ -71,24 +70,25 @@ impl Mesh {
     fn fill_chain(
         &mut self,
         center: u32,
-        corners: &mut [StarCorner],
-        is_whole: bool,
+        star: &mut StarPolygon,
+        chains: &mut Vec<Chain>,
         chain: Chain,
         face: u32,
     ) {
         let Chain { first, last, base } = chain;
+        let StarPolygon { corners, is_whole, .. } = star;
         let apex = delaunay_apex(corners, first, last);
         let [a, b, c] = [first, apex, last].map(|i| corners[i].vertex);
-        let frame = if is_whole {
+        let frame = if *is_whole {
             Frame::ZERO
         } else {
             self.triangle_frame(center, [first, apex, last].map(|i| &corners[i]))
         };
         let sides = [Edge::new(face, 0), Edge::new(face, 1), Edge::new(face, 2)];
         self.faces[face as usize] = Face::new([a, b, c], [Edge::NONE, Edge::NONE, base], frame);
-        self.outgoing[a as usize] = sides[0];
-        self.outgoing[b as usize] = sides[1];
-        self.outgoing[c as usize] = sides[2];
+        self.set_outgoing(a, sides[0]);
+        self.set_outgoing(b, sides[1]);
+        self.set_outgoing(c, sides[2]);
         if base == Edge::NONE {
             corners[last].inner = sides[2];
         } else {
@@ -97,30 +97,30 @@ impl Mesh {
         if apex == first + 1 {
             corners[first].inner = sides[0];
         } else {
-            self.chains.push(Chain { first, last: apex, base: sides[0] });
+            chains.push(Chain { first, last: apex, base: sides[0] });
         }
         if last == apex + 1 {
             corners[apex].inner = sides[1];
         } else {
-            self.chains.push(Chain { first: apex, last, base: sides[1] });
+            chains.push(Chain { first: apex, last, base: sides[1] });
         }
     }
 
     /// The frame of a face of three corners of a polygon.
     #[cold]
     fn triangle_frame(&self, center: u32, corners: [&StarCorner; 3]) -> Frame {
-        let p = self.position[center as usize];
+        let p = self.position(center);
         Frame::new(corners.map(|corner| self.corner_shift(p, corner)))
     }
 
     /// Builds the mesh of all other vertices from nothing.
     #[cold]
-    fn rebuild_without(&mut self, vertex: u32) {
-        let others: Vec<u32> = self.vertices().filter(|&v| v != vertex).collect();
+    fn rebuild_without(&mut self, vertex: u32, scratch: &mut Scratch) {
+        let others: Vec<u32> = self.vertex_numbers().filter(|&v| v != vertex).collect();
         let former_faces = self.faces.len() as u32;
         self.clear();
         for v in others {
-            let existing = self.insert(v, self.position[v as usize], self.last);
+            let existing = self.insert(v, self.position(v), self.last, scratch);
             debug_assert_eq!(existing, None, "vertices are distinct");
         }
         self.changed.clear();

@@ -9,8 +9,8 @@ impl Mesh {
     /// Adds `vertex`, whose place is known and free: connects it to the corners of the face that
     /// holds it and flips edges until none is illegal.
     #[cold]
-    pub(super) fn insert_by_flips(&mut self, vertex: u32) {
-        let found = self.walk(self.last, self.position[vertex as usize]);
+    pub(super) fn insert_by_flips(&mut self, vertex: u32, suspects: &mut Vec<Edge>) {
+        let found = self.walk(self.last, self.position(vertex));
         match found.place {
             Place::Vertex(at) => debug_assert!(false, "vertex {at} is in the place of {vertex}"),
             Place::Face(face) => {
@@ -24,17 +24,17 @@ impl Mesh {
                 self.flip(flat);
             }
         }
-        self.suspects.clear();
-        let first = self.outgoing[vertex as usize];
+        suspects.clear();
+        let first = self.outgoing(vertex);
         let mut e = first;
         loop {
-            self.suspects.extend([e, e.next()]);
+            suspects.extend([e, e.next()]);
             e = self.turn(e);
             if e == first {
                 break;
             }
         }
-        self.restore_delaunay();
+        self.restore_delaunay(suspects);
     }
 
     /// Connects `vertex`, the copy of it by `shift` in the frame of `face`, to the corners.
@@ -52,9 +52,9 @@ impl Mesh {
         for (k, from) in [a, b, c].into_iter().enumerate() {
             let side = Edge::new(ids[k], 0);
             self.glue(side, old.twin(k));
-            self.outgoing[from.0 as usize] = side;
+            self.set_outgoing(from.0, side);
         }
-        self.outgoing[vertex as usize] = Edge::new(face, 2);
+        self.set_outgoing(vertex, Edge::new(face, 2));
         self.changed.extend(ids.map(FaceId));
         ids.map(|id| Edge::new(id, 0))
     }
@@ -64,13 +64,13 @@ impl Mesh {
     /// Ends because each flip lowers the surface that lifts the points to their (perturbed)
     /// squared norm, and correct because a locally Delaunay triangulation of a flat torus is
     /// globally so (Bobenko and Springborn 2007).
-    fn restore_delaunay(&mut self) {
-        while let Some(e) = self.suspects.pop() {
+    fn restore_delaunay(&mut self, suspects: &mut Vec<Edge>) {
+        while let Some(e) = suspects.pop() {
             if self.is_illegal(e) {
                 let t = self.twin(e);
                 self.flip(e);
                 self.changed.extend([FaceId(e.face()), FaceId(t.face())]);
-                self.suspects.extend([e, e.previous(), t, t.previous()]);
+                suspects.extend([e, e.previous(), t, t.previous()]);
             }
         }
         self.list_changes_once();
@@ -105,8 +105,8 @@ impl Mesh {
             self.glue(h, beyond_ux);
             self.glue(t, beyond_vw);
         }
-        self.outgoing[u as usize] = h;
-        self.outgoing[v as usize] = t;
+        self.set_outgoing(u, h);
+        self.set_outgoing(v, t);
     }
 
     /// The frames of the faces of `h` and its twin after the flip of `h`.
