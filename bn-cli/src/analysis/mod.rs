@@ -1,6 +1,7 @@
 //! Every statistic of a point set or an ensemble, each computed at most once and only if asked for.
 
 mod direct;
+mod page;
 mod statistic;
 mod summary;
 mod windowed;

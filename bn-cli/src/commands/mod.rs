@@ -5,6 +5,8 @@ mod completions;
 mod convert;
 mod generate;
 mod list;
+#[cfg(feature = "report")]
+mod report;
 
 use std::ffi::OsString;
 
@@ -34,7 +36,7 @@ impl Global {
 
 /// The whole command line, from which parser, help and completions come.
 pub fn command() -> Command {
-    Global::augment_args(Command::new("bn"))
+    let command = Global::augment_args(Command::new("bn"))
         .version(env!("CARGO_PKG_VERSION"))
         .about("The workbench for irregular sampling: make, measure and draw sampling patterns")
         .long_about(
@@ -56,7 +58,10 @@ pub fn command() -> Command {
             analyze::command(),
             convert::command(),
             completions::command(),
-        ])
+        ]);
+    #[cfg(feature = "report")]
+    let command = command.subcommand(report::command());
+    command
 }
 
 /// Runs `bn` with these arguments, the program's name first.
@@ -77,6 +82,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Outcome {
         Some(("analyze", matches)) => analyze::run(&parsed(matches)?, &global),
         Some(("convert", matches)) => convert::run(&parsed(matches)?),
         Some(("completions", matches)) => completions::run(&parsed(matches)?),
+        #[cfg(feature = "report")]
+        Some(("report", matches)) => report::run(&parsed(matches)?),
         _ => unreachable!("clap requires one of the subcommands above"),
     }
 }
