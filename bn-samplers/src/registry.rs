@@ -5,7 +5,8 @@ use thiserror::Error;
 use crate::names::nearest_name;
 use crate::poisson_disk::{dart_throwing, maximal};
 use crate::{
-    Method, farthest_point_strategy, halton, hexagonal, jittered, r2, regular, sobol, stochastic,
+    Method, farthest_point_strategy, halton, hexagonal, jittered, lloyd, net, r2, regular, sobol,
+    stochastic,
 };
 
 /// Every method, in the order of the thesis's appendix B, then those that it doesn't show.
@@ -18,6 +19,8 @@ pub const METHODS: &[&Method] = &[
     &dart_throwing::METHOD,
     &maximal::METHOD,
     &farthest_point_strategy::METHOD,
+    &lloyd::METHOD,
+    &net::METHOD,
     &regular::METHOD,
     &hexagonal::METHOD,
     &halton::METHOD,

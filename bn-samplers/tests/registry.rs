@@ -242,6 +242,8 @@ const GOLDEN: &[Golden] = &[
     ("dart-throwing", 1, &[("radius", "0.2")], 0xc45d_a87f_dbb9_7eec),
     ("maximal-poisson-disk", 1, &[], 0x8a8c_519c_25fc_78dd),
     ("farthest-point-strategy", 1, &[], 0x1d77_dd39_4f44_eaa7),
+    ("net", 1, &[], 0xcc75_e36f_cd1d_4505),
+    ("net", 1, &[("construction", "larcher-pillichshammer")], 0x1cc8_4e7b_423f_894d),
     ("regular", 1, &[], 0xe998_254e_3a49_0485),
     ("hexagonal", 1, &[], 0xd09f_ae10_f2c2_f528),
     ("halton", 1, &[], 0x961a_89fc_6f48_ac61),
