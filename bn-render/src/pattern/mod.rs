@@ -1,0 +1,229 @@
+//! Point sets laid over the image plane.
+
+mod buckets;
+mod variation;
+
+use bn_core::{DVec2, PointSet};
+use thiserror::Error;
+
+use crate::Rect;
+use buckets::{Buckets, Interval};
+use variation::Change;
+pub use variation::TileVariation;
+
+/// Why a point set can't be laid over the image plane as asked.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PatternError {
+    /// A number of samples per pixel that is not a number, or beyond all use.
+    #[error("{samples_per_pixel} samples per pixel are not possible; ask for 2⁻¹⁶ to 2¹⁶")]
+    SamplesPerPixel {
+        /// The number asked for.
+        samples_per_pixel: f64,
+    },
+}
+
+/// A point set tiled over the whole image plane.
+///
+/// A set of n points at s samples per pixel fills a square tile of side L = √(n/s) pixels, a real
+/// number; the sample of point (x, y) in tile (a, b) lies at ((a + x)·L, (b + y)·L), for all
+/// integers a and b: tile (0, 0) starts at the image's corner. With n = s the set is a pattern for
+/// one pixel.
+#[derive(Clone, Debug)]
+pub struct Pattern {
+    buckets: Buckets,
+    samples_per_pixel: f64,
+    side: f64,
+    variation: TileVariation,
+}
+
+impl Pattern {
+    /// The set tiled at `samples_per_pixel`.
+    ///
+    /// # Errors
+    /// If `samples_per_pixel` is not a number from 2⁻¹⁶ to 2¹⁶.
+    pub fn tiled(set: &PointSet, samples_per_pixel: f64) -> Result<Self, PatternError> {
+        let limit = f64::from(1 << 16);
+        if !(1.0 / limit..=limit).contains(&samples_per_pixel) {
+            return Err(PatternError::SamplesPerPixel { samples_per_pixel });
+        }
+        let side = (set.len() as f64 / samples_per_pixel).sqrt();
+        let variation = TileVariation::Repeated;
+        Ok(Self { buckets: Buckets::new(set), samples_per_pixel, side, variation })
+    }
+
+    /// The same with tiles that differ.
+    #[must_use]
+    pub fn varied(self, variation: TileVariation) -> Self {
+        Self { variation, ..self }
+    }
+
+    /// Samples per pixel s.
+    pub fn samples_per_pixel(&self) -> f64 {
+        self.samples_per_pixel
+    }
+
+    /// The tile's side L in pixels.
+    pub fn side(&self) -> f64 {
+        self.side
+    }
+
+    /// Points in a tile.
+    pub fn points_per_tile(&self) -> usize {
+        self.buckets.len()
+    }
+
+    /// Appends the samples with `min ≤ (u, v) < max` to `list`.
+    ///
+    /// In the order of tiles (row by row), then of a fixed order of the points in a tile: the
+    /// samples of a smaller rectangle come in the same order as within a larger one. Cost: some 2
+    /// ns for each sample in the rectangle grown by a few samples' distance.
+    pub fn samples_in(&self, rect: &Rect, list: &mut SampleList) {
+        self.for_each_tile(rect, |tile| self.append(rect, tile, list));
+    }
+
+    /// The number of samples with `min ≤ (u, v) < max`; the cost grows with the border only.
+    pub fn count_in(&self, rect: &Rect) -> u64 {
+        let (mut count, mut list) = (0, SampleList::default());
+        self.for_each_tile(rect, |tile| {
+            if tile.is_whole() {
+                count += self.points_per_tile() as u64;
+            } else {
+                list.clear();
+                self.append(rect, tile, &mut list);
+                count += list.len() as u64;
+            }
+        });
+        count
+    }
+
+    /// Calls `visit` for each tile that meets the rectangle, row by row.
+    fn for_each_tile(&self, rect: &Rect, mut visit: impl FnMut(&Tile)) {
+        let (low, high) = (rect.min / self.side, rect.max / self.side);
+        if !(low.is_finite() && high.is_finite()) {
+            return;
+        }
+        let overlap = |low: f64, high: f64, index: i64| {
+            let slack = slack(index as f64);
+            (low - index as f64 - slack, high - index as f64 + slack)
+        };
+        let tiles = |low: f64, high: f64| {
+            (low - slack(low)).floor() as i64..=(high + slack(high)).floor() as i64
+        };
+        for b in tiles(low.y, high.y) {
+            let y = overlap(low.y, high.y, b);
+            for a in tiles(low.x, high.x) {
+                visit(&Tile { a, b, x: overlap(low.x, high.x, a), y });
+            }
+        }
+    }
+
+    fn append(&self, rect: &Rect, tile: &Tile, list: &mut SampleList) {
+        let (xs, ys) = (self.buckets.xs(), self.buckets.ys());
+        let corner = DVec2::new(tile.a as f64, tile.b as f64);
+        let Some(change) = self.variation.of_tile(tile.a, tile.b) else {
+            for run in self.buckets.runs(tile.x, tile.y) {
+                let points = xs[run.clone()].iter().zip(&ys[run]);
+                list.append(rect, points.map(|(&x, &y)| (corner + DVec2::new(x, y)) * self.side));
+            }
+            return;
+        };
+        let place = |p: DVec2| (corner + change.apply(p)) * self.side;
+        let [from_x, from_y] = clamped_sources(change, tile);
+        // Sorted and read once each, so that the order is that of the points whatever the
+        // rectangle.
+        let mut runs: Vec<_> = (from_y.into_iter())
+            .flat_map(|y| from_x.into_iter().flat_map(move |x| self.buckets.runs(x, y)))
+            .collect();
+        runs.sort_unstable_by_key(|run| run.start);
+        let mut read_to = 0;
+        for run in runs {
+            let fresh = run.start.max(read_to)..run.end;
+            read_to = read_to.max(run.end);
+            list.append(rect, fresh.map(|i| place(DVec2::new(xs[i], ys[i]))));
+        }
+    }
+}
+
+/// What a coordinate over a tile's side may be off, with room: relative to the tile's index for
+/// the rounding of the division, and a little more.
+fn slack(index: f64) -> f64 {
+    1e-9 + 1e-15 * index.abs()
+}
+
+fn clamped_sources(change: Change, tile: &Tile) -> [[Interval; 2]; 2] {
+    let clamp = |(low, high): Interval| (low.max(0.0), high.min(1.0));
+    change.sources(clamp(tile.x), clamp(tile.y))
+}
+
+/// A tile, and what is wanted of it in its own coordinates.
+struct Tile {
+    a: i64,
+    b: i64,
+    x: Interval,
+    y: Interval,
+}
+
+impl Tile {
+    /// Whether all of the tile is wanted, beyond doubt.
+    fn is_whole(&self) -> bool {
+        // The intervals are generous by one slack; two more make sure.
+        let whole = |(low, high): Interval, index: i64| {
+            let slack = slack(index as f64);
+            low < -3.0 * slack && high > 1.0 + 3.0 * slack
+        };
+        whole(self.x, self.a) && whole(self.y, self.b)
+    }
+}
+
+/// Places of samples, one array for each coordinate so that loops over them can be vectorised.
+#[derive(Clone, Debug, Default)]
+pub struct SampleList {
+    u: Vec<f64>,
+    v: Vec<f64>,
+}
+
+impl SampleList {
+    /// Abscissae in pixels.
+    pub fn u(&self) -> &[f64] {
+        &self.u
+    }
+
+    /// Ordinates in pixels, downwards.
+    pub fn v(&self) -> &[f64] {
+        &self.v
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.u.len()
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.u.is_empty()
+    }
+
+    /// Forgets all samples, keeps the memory.
+    pub fn clear(&mut self) {
+        self.u.clear();
+        self.v.clear();
+    }
+
+    /// Appends those of `points` that lie in the half-open rectangle.
+    fn append(&mut self, rect: &Rect, points: impl ExactSizeIterator<Item = DVec2>) {
+        let start = self.u.len();
+        self.u.resize(start + points.len(), 0.0);
+        self.v.resize(start + points.len(), 0.0);
+        let (us, vs) = (&mut self.u[start..], &mut self.v[start..]);
+        let mut kept = 0;
+        // Written first, counted after: no branch to mispredict at the rectangle's border.
+        for p in points {
+            us[kept] = p.x;
+            vs[kept] = p.y;
+            kept += usize::from(p.cmpge(rect.min).all() & p.cmplt(rect.max).all());
+        }
+        self.u.truncate(start + kept);
+        self.v.truncate(start + kept);
+    }
+}

@@ -1,0 +1,95 @@
+//! Images through supersampling patterns.
+
+use rayon::prelude::*;
+
+use super::{Class, Supersampling};
+use crate::{Frame, Image, ImageError, Scene};
+
+impl Supersampling {
+    /// The frame's window of the scene through this pattern, and the number of samples taken:
+    /// each sample is evaluated once, however many pixels share it.
+    ///
+    /// Sums run over classes of shared samples and then over taps, in f64, the same on any number
+    /// of threads. Memory: two f64 a pixel and channel beside the image.
+    ///
+    /// # Errors
+    /// If the window is too large for an image in memory.
+    pub fn render(&self, scene: &dyn Scene, frame: &Frame) -> Result<(Image, u64), ImageError> {
+        let window = frame.window();
+        let (width, height) = (window.width as usize, window.height as usize);
+        let channels = scene.channels().count();
+        let pixels = u64::from(window.width) * u64::from(window.height);
+        if pixels * channels as u64 > Image::MAX_SAMPLES {
+            let (width, height) = (u64::from(window.width), u64::from(window.height));
+            return Err(ImageError::Size { width, height });
+        }
+        let mut sums = vec![0.0; width * height * channels];
+        let mut taken = 0;
+        for class in self.classes() {
+            let lattice = Lattice::around(&class, frame);
+            let samples = lattice.evaluate(scene, &class);
+            taken += (lattice.width * lattice.height) as u64;
+            let rows = sums.par_chunks_exact_mut(width * channels).enumerate();
+            rows.for_each(|(j, row)| lattice.add_row(&class, &samples, channels, j, row));
+        }
+        let values = sums.into_iter().map(|sum| sum as f32).collect();
+        Ok((Image::new(window.width, window.height, scene.channels(), values)?, taken))
+    }
+}
+
+/// The samples of one class that a window needs: one for each pixel and a margin.
+struct Lattice {
+    /// The pixel that the first sample belongs to, and how far the window's first pixel is from it.
+    first: (i64, i64),
+    margin: (i64, i64),
+    width: usize,
+    height: usize,
+}
+
+impl Lattice {
+    fn around(class: &Class, frame: &Frame) -> Self {
+        let window = frame.window();
+        let span = |shift: fn(&(i64, i64, f64)) -> i64| {
+            let shifts = || class.shifts.iter().map(shift);
+            (shifts().min().unwrap_or(0), shifts().max().unwrap_or(0))
+        };
+        let (x, y) = (span(|s| s.0), span(|s| s.1));
+        Self {
+            first: (i64::from(window.x) + x.0, i64::from(window.y) + y.0),
+            margin: (-x.0, -y.0),
+            width: (i64::from(window.width) + x.1 - x.0) as usize,
+            height: (i64::from(window.height) + y.1 - y.0) as usize,
+        }
+    }
+
+    /// The samples' values: for each row first all of channel 0, then all of channel 1, …
+    fn evaluate(&self, scene: &dyn Scene, class: &Class) -> Vec<f64> {
+        let channels = scene.channels().count();
+        let start = (self.first.0 as f64 + 0.5) + class.residue.x;
+        let u: Vec<f64> = (0..self.width).map(|i| start + i as f64).collect();
+        let mut samples = vec![0.0; self.width * self.height * channels];
+        let rows = samples.par_chunks_exact_mut(self.width * channels).enumerate();
+        rows.for_each_init(
+            || vec![0.0; self.width],
+            |v, (j, row)| {
+                v.fill(((self.first.1 + j as i64) as f64 + 0.5) + class.residue.y);
+                scene.values(&u, v, row);
+            },
+        );
+        samples
+    }
+
+    /// Adds what the class gives to row `j` of the window.
+    fn add_row(&self, class: &Class, samples: &[f64], channels: usize, j: usize, row: &mut [f64]) {
+        let width = row.len() / channels;
+        for &(dx, dy, weight) in &class.shifts {
+            let (x, y) = ((self.margin.0 + dx) as usize, (self.margin.1 + dy) as usize + j);
+            for c in 0..channels {
+                let line = &samples[(y * channels + c) * self.width + x..][..width];
+                for (sum, value) in row.iter_mut().skip(c).step_by(channels).zip(line) {
+                    *sum += weight * value;
+                }
+            }
+        }
+    }
+}

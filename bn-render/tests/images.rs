@@ -1,0 +1,205 @@
+//! Image files: what is written is read again, and what is broken is refused.
+
+use std::io::Cursor;
+
+use bn_render::{
+    BitDepth, Channels, Encoding, Image, ImageError, PfmWriter, PngEncoding, PngOptions, PngWriter,
+    read_pfm, read_png, write_pfm, write_png,
+};
+use proptest::prelude::*;
+
+fn image(width: u32, height: u32, channels: Channels) -> Image {
+    let n = width as usize * height as usize * channels.count();
+    let values = (0..n).map(|i| (i * 37 % 256) as f32 / 255.0).collect();
+    Image::new(width, height, channels, values).expect("an image")
+}
+
+fn png_bytes(image: &Image, options: &PngOptions) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_png(image, &mut bytes, options).expect("written");
+    bytes
+}
+
+fn pfm_bytes(image: &Image) -> Vec<u8> {
+    let mut file = Cursor::new(Vec::new());
+    write_pfm(image, &mut file).expect("written");
+    file.into_inner()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
+
+    #[test]
+    fn pfm_keeps_every_bit(
+        width in 1_u32..20, height in 1_u32..20, rgb in any::<bool>(), seed in any::<u32>(),
+    ) {
+        let channels = if rgb { Channels::Rgb } else { Channels::Grey };
+        let n = (width * height) as usize * channels.count();
+        let finite = |i: usize| {
+            let bits = (i as u32 + 1).wrapping_mul(seed | 1).wrapping_mul(2_654_435_761);
+            Some(f32::from_bits(bits)).filter(|v| v.is_finite()).unwrap_or(0.5)
+        };
+        let image = Image::new(width, height, channels, (0..n).map(finite).collect()).expect("an image");
+        prop_assert_eq!(read_pfm(&pfm_bytes(&image)[..]).expect("read"), image);
+    }
+
+    #[test]
+    fn broken_files_are_errors_not_panics(
+        cut in 0.0_f64..1.0, flip in 0.0_f64..1.0, bit in 0_u8..8, png in any::<bool>(),
+    ) {
+        let image = image(13, 7, Channels::Rgb);
+        let whole = if png { png_bytes(&image, &PngOptions::default()) } else { pfm_bytes(&image) };
+        let read = |bytes: &[u8]| if png { read_png(Cursor::new(bytes), None) } else { read_pfm(bytes) };
+        let short = &whole[..(cut * whole.len() as f64) as usize];
+        // A PNG may lack its last chunks and still hold all rows.
+        prop_assert!(read(short).is_err() || (png && cut > 0.9));
+        let mut changed = whole.clone();
+        let place = (flip * whole.len() as f64) as usize;
+        changed[place] ^= 1 << bit;
+        // Either refused or an image: values may differ, nothing may panic.
+        if let Ok(image) = read(&changed) {
+            prop_assert!(image.values().iter().all(|v| v.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn png_keeps_what_its_depth_can_hold() {
+    for channels in [Channels::Grey, Channels::Rgb] {
+        for encoding in [Encoding::Srgb, Encoding::Linear] {
+            for (depth, levels) in [(BitDepth::Eight, 255.0), (BitDepth::Sixteen, 65535.0)] {
+                for compression in [PngEncoding::Fast, PngEncoding::Small] {
+                    let image = image(31, 17, channels);
+                    let options = PngOptions { depth, encoding, compression, text: vec![] };
+                    let bytes = png_bytes(&image, &options);
+                    let read = read_png(Cursor::new(&bytes), None).expect("read");
+                    assert_eq!((read.width(), read.height(), read.channels()), (31, 17, channels));
+                    for (got, want) in read.values().iter().zip(image.values()) {
+                        let off =
+                            encoding.encode(f64::from(*got)) - encoding.encode(f64::from(*want));
+                        assert!(off.abs() <= 0.501 / levels, "{got} for {want}");
+                    }
+                    // What was read is exactly representable, so a second trip changes nothing.
+                    let again = png_bytes(&read, &options);
+                    assert_eq!(read_png(Cursor::new(again), None).expect("read"), read);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_encoding_can_be_overruled() {
+    let image = Image::new(1, 1, Channels::Grey, vec![1.0 / 255.0 * 128.0]).expect("an image");
+    let linear = PngOptions { encoding: Encoding::Linear, ..PngOptions::default() };
+    let bytes = png_bytes(&image, &linear);
+    let as_said = read_png(Cursor::new(&bytes), None).expect("read");
+    assert!((as_said.values()[0] - 128.0 / 255.0).abs() < 1e-6);
+    let as_told = read_png(Cursor::new(&bytes), Some(Encoding::Srgb)).expect("read");
+    assert!((as_told.values()[0] - 0.215_860_5).abs() < 1e-6);
+}
+
+#[test]
+fn values_out_of_range_are_clamped() {
+    let image = Image::new(2, 1, Channels::Grey, vec![-0.5, 1.5]).expect("an image");
+    let read =
+        read_png(Cursor::new(png_bytes(&image, &PngOptions::default())), None).expect("read");
+    assert_eq!(read.values(), [0.0, 1.0]);
+}
+
+#[test]
+fn streaming_gives_the_same_bytes() {
+    let image = image(40, 33, Channels::Rgb);
+    let options =
+        PngOptions { text: vec![("Comment".into(), "seed 1".into())], ..PngOptions::default() };
+    let shared = tempfile();
+    let mut png = PngWriter::new(shared.clone(), 40, 33, Channels::Rgb, &options).expect("begun");
+    let mut pfm = PfmWriter::new(Cursor::new(Vec::new()), 40, 33, Channels::Rgb).expect("begun");
+    for rows in image.values().chunks(40 * 3 * 10) {
+        png.write_rows(rows).expect("written");
+        pfm.write_rows(rows).expect("written");
+    }
+    png.finish().expect("complete");
+    pfm.finish().expect("complete");
+    assert_eq!(shared.bytes(), png_bytes(&image, &options));
+}
+
+/// A file in memory that outlives its writer.
+#[derive(Clone)]
+struct Shared(std::sync::Arc<std::sync::Mutex<Vec<u8>>>);
+
+fn tempfile() -> Shared {
+    Shared(std::sync::Arc::default())
+}
+
+impl Shared {
+    fn bytes(&self) -> Vec<u8> {
+        self.0.lock().expect("no panic").clone()
+    }
+}
+
+impl std::io::Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().expect("no panic").extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn unfinished_files_are_told() {
+    let mut pfm = PfmWriter::new(Cursor::new(Vec::new()), 4, 4, Channels::Grey).expect("begun");
+    pfm.write_rows(&[0.0; 8]).expect("written");
+    assert!(matches!(pfm.finish(), Err(ImageError::Format { .. })));
+    let mut png =
+        PngWriter::new(tempfile(), 4, 4, Channels::Grey, &PngOptions::default()).expect("begun");
+    png.write_rows(&[0.0; 8]).expect("written");
+    assert!(png.finish().is_err());
+}
+
+#[test]
+fn pfm_headers_are_checked() {
+    let refused = |bytes: &[u8]| {
+        matches!(read_pfm(bytes), Err(ImageError::Format { .. } | ImageError::Size { .. }))
+    };
+    for bad in [
+        &b""[..],
+        b"P5\n1 1\n-1\n\0\0\0\0",
+        b"Pf\n1\n-1\n\0\0\0\0",
+        b"Pf\n1 1 1\n-1\n\0\0\0\0",
+        b"Pf\n-1 1\n-1\n\0\0\0\0",
+        b"Pf\n1 1\n0\n\0\0\0\0",
+        b"Pf\n1 1\nnan\n\0\0\0\0",
+        b"Pf\n1 1\n-1\n\0\0\0",
+        b"Pf\n0 1\n-1\n",
+        b"Pf\n4000000000 4000000000\n-1\n\0\0\0\0",
+        b"Pf\n30000 30000\n-1\n\0\0\0\0",
+        b"\xff\xfe\n1 1\n-1\n",
+    ] {
+        assert!(refused(bad), "{bad:?}");
+    }
+    assert!(matches!(
+        read_pfm(&b"Pf\n1 1\n-1\n\0\0\x80\x7f"[..]),
+        Err(ImageError::NotFinite { .. })
+    ));
+    // Big-endian, Windows line ends, two rows: the first in the file is the lower.
+    let big = b"Pf\r\n1 2\r\n1.0\r\n\x3f\x00\x00\x00\x3e\x80\x00\x00";
+    assert_eq!(read_pfm(&big[..]).expect("read").values(), [0.25, 0.5]);
+}
+
+#[cfg(feature = "exr")]
+#[test]
+fn exr_keeps_every_bit() {
+    for channels in [Channels::Grey, Channels::Rgb] {
+        let image = image(19, 11, channels);
+        let mut file = Cursor::new(Vec::new());
+        bn_render::write_exr(&image, &mut file).expect("written");
+        let bytes = file.into_inner();
+        assert_eq!(bn_render::read_exr(Cursor::new(&bytes)).expect("read"), image);
+        for length in (0..bytes.len()).step_by(29) {
+            assert!(bn_render::read_exr(Cursor::new(&bytes[..length])).is_err(), "{length}");
+        }
+    }
+}
