@@ -75,7 +75,7 @@ const MOST_ITERATIONS: u64 = 1_000_000;
 impl Sampler for Lloyd {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
         check_count(METHOD.name, n)?;
-        if !(self.tolerance.value() >= 0.0) {
+        if !(0.0..f64::INFINITY).contains(&self.tolerance.value()) {
             let reason = format!("{} is not a distance", self.tolerance);
             return Err(SampleError::InvalidOption { option: "tolerance", reason });
         }

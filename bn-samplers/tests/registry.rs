@@ -15,6 +15,12 @@ fn sample(method: &Method, n: usize, seed: u64) -> Result<Sample, SampleError> {
     sampler.sample(n, Seed::new(seed), &Unobserved)
 }
 
+/// Options that keep the work small where nothing but its kind matters.
+fn brief(method: &Method) -> Vec<(&'static str, &'static str)> {
+    let iterates = method.options.iter().any(|spec| spec.name == "iterations");
+    if iterates { vec![("iterations", "20")] } else { Vec::new() }
+}
+
 /// The possible count nearest to `n`.
 fn possible(method: &Method, n: usize) -> usize {
     match method.counts {
@@ -84,9 +90,11 @@ fn repeatable_on_any_number_of_threads() {
     for method in METHODS {
         for n in [100, 9000] {
             let n = possible(method, n);
+            let sampler = method.with_options(brief(method)).expect("valid");
             let on_threads = |threads: usize| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                pool.expect("threads").install(|| sample(method, n, 5)).expect("possible")
+                let run = || sampler.sample(n, Seed::new(5), &Unobserved);
+                pool.expect("threads").install(run).expect("possible")
             };
             let one = on_threads(1);
             assert!(one == on_threads(2), "{} of {n} points", method.name);
@@ -241,7 +249,8 @@ const GOLDEN: &[Golden] = &[
     ("dart-throwing", 1, &[], 0x54db_8273_0751_fa2b),
     ("dart-throwing", 1, &[("radius", "0.2")], 0xc45d_a87f_dbb9_7eec),
     ("maximal-poisson-disk", 1, &[], 0x8a8c_519c_25fc_78dd),
-    ("farthest-point-strategy", 1, &[], 0x1d77_dd39_4f44_eaa7),
+    ("farthest-point-strategy", 1, &[], 0x1818_ab1b_8804_4745),
+    ("lloyd", 1, &[("iterations", "50")], 0xdddf_a785_8951_6880),
     ("net", 1, &[], 0xcc75_e36f_cd1d_4505),
     ("net", 1, &[("construction", "larcher-pillichshammer")], 0x1cc8_4e7b_423f_894d),
     ("regular", 1, &[], 0xe998_254e_3a49_0485),
