@@ -12,7 +12,7 @@ use super::chapter::{Chapter, Curve, Diagram, Value};
 use super::{Effort, SEED};
 
 /// Patterns from white to blue; one that the registry doesn't have is left out.
-const METHODS: [&str; 4] = ["stochastic", "jittered", "dart-throwing", "farthest-point-strategy"];
+const METHODS: [&str; 3] = ["stochastic", "dart-throwing", "farthest-point-strategy"];
 
 /// The estimators and their statistics: ν_eff, Ω.
 const ESTIMATORS: [(&str, [Statistic; 2]); 2] = [
