@@ -1,12 +1,13 @@
 //! Spectra and correlations of point sets on the unit torus, and the transforms they need.
 //!
 //! [`WindowedSpectrum`] gives the statistics that the thesis prints, ν_eff and Ω, from the pair
-//! distances of point sets ([`PairHistogram`] → RDF → [`RdfToPower`], back by [`PowerToRdf`]);
-//! [`RingMeans`] gives the same from the exact power of every mode. Beneath them lie the Hankel
-//! transform of order 0, on quadrature nodes ([`HankelPlan`]) and between lattices
-//! ([`BesselSums`]), and Bessel functions over slices ([`j0_slice`]). Closed forms for tests and
-//! predictions: [`JitteredGrid`], [`square_lattice_rings`], [`hexagonal_lattice_rings`],
-//! [`step_rdf`].
+//! distances of point sets ([`PairHistogram`] → RDF → [`RdfToPower`], back by [`PowerToRdf`]).
+//! [`RadialPower`] gives the same from the exact power of every mode, ring by ring ([`RingMeans`]),
+//! and with it the anisotropy; [`PowerImage`] and [`Autocorrelation`] are the two-dimensional
+//! views. Beneath them lie the non-uniform Fourier transform ([`Nufft`]), the Hankel transform of
+//! order 0, on quadrature nodes ([`HankelPlan`]) and between lattices ([`BesselSums`]), and Bessel
+//! functions over slices ([`j0_slice`]). Closed forms for tests and predictions:
+//! [`JitteredGrid`], [`square_lattice_rings`], [`hexagonal_lattice_rings`], [`step_rdf`].
 //!
 //! Frequencies are in cycles per unit unless a type says otherwise, P → 1 at high frequencies and
 //! g → 1 at large distances.

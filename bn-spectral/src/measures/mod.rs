@@ -8,10 +8,10 @@
 //!   numbers that the thesis prints. The window's main lobe blurs P over ±6 cycles at n = 4096 (3/(2
 //!   half-widths) in general): steep edges lose 0.01 to 0.05 of ν_eff, peaks 10 to 15 % of Ω. In
 //!   exchange noise is averaged: Ω of random points is 0.2 for one set of 4096, 0.06 for ten.
-//! - *direct* ([`RingMeans`]): P from the exact power of every mode. Unbiased: 1.000 for the square
-//!   grid. Each mode's power fluctuates by 100 %, so that for disordered sets E Ω² of B rings that
-//!   hold C modes in all is 200·B/(R·C) above its limit, R the number of sets: 0.63 for one random
-//!   set of 1024 on rings of width 1.
+//! - *direct* ([`RingMeans`]): P from the exact power of every mode. Unbiased, up to the width of the
+//!   rings. Each mode's power fluctuates by 100 %, so that for disordered sets E Ω² of B rings that
+//!   hold C modes in all is 200·B/(R·C) above its limit, R the number of sets: Ω is 0.63 for one
+//!   random set of 1024 points on rings of width 1.
 
 mod conversion;
 mod direct;
