@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use bn_core::{DVec2, PointSet, Seed};
-use bn_geometry::Triangulation;
+use bn_core::{DVec2, PointSet, Seed, torus};
+use bn_geometry::{EmptyCircles, Triangulation};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rand::RngExt;
 
@@ -38,7 +38,7 @@ fn build(c: &mut Criterion) {
     group.finish();
 }
 
-/// One point leaves and comes back elsewhere: by a search from the hints, and near a known face.
+/// One point leaves and comes back elsewhere.
 fn moves(c: &mut Criterion) {
     let mut group = c.benchmark_group("move");
     group.throughput(Throughput::Elements(1));
@@ -52,21 +52,24 @@ fn moves(c: &mut Criterion) {
                 triangulation.insert(index, random_point(&mut rng));
             });
         });
-        group.bench_function(BenchmarkId::new("into_a_known_face", n), |b| {
+        group.bench_function(BenchmarkId::new("and_back", n), |b| {
             b.iter(|| {
                 let index = rng.random_range(0..n as u32) as usize;
-                let other = rng.random_range(0..n as u32) as usize;
-                let Some(id) = triangulation.star(other).next().filter(|_| index != other) else {
-                    return;
-                };
-                let [p, q, r] = triangulation.face(id).corners;
+                let p = triangulation.position(index);
                 triangulation.remove(index);
-                if triangulation.has_face(id) {
-                    let target = bn_core::torus::wrap_point((p + q + r) / 3.0);
-                    triangulation.insert_near(index, target, id);
-                } else {
-                    triangulation.insert(index, random_point(&mut rng));
-                }
+                triangulation.insert_near(index, p, triangulation.changed_faces()[2]);
+            });
+        });
+        let mut holes = EmptyCircles::new(&triangulation);
+        group.bench_function(BenchmarkId::new("into_the_largest_hole", n), |b| {
+            b.iter(|| {
+                let index = rng.random_range(0..n as u32) as usize;
+                triangulation.remove(index);
+                holes.update(&triangulation);
+                let face = holes.largest().expect("points are left");
+                let center = torus::wrap_point(triangulation.circumcircle(face).center);
+                triangulation.insert_near(index, center, face);
+                holes.update(&triangulation);
             });
         });
     }

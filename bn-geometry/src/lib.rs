@@ -45,5 +45,5 @@ pub use coverage::Coverage;
 pub use empty_circles::EmptyCircles;
 pub use order::{bond_orientational_order, local_bond_orientational_order};
 pub use spacing::Spacing;
-pub use triangulation::{Edge, Face, FaceId, Faces, Location, Neighbors, Star, Triangulation};
+pub use triangulation::{Face, FaceId, Faces, Location, Neighbors, Star, Triangulation};
 pub use voronoi::{VoronoiCell, voronoi_cells, voronoi_cells_into};

@@ -19,16 +19,20 @@ use crate::Triangulation;
 /// Absolute error below n·1e-15; O(n log `fold`) for n points.
 pub fn local_bond_orientational_order(triangulation: &Triangulation, fold: u32) -> Vec<f64> {
     let mut sums = vec![Bonds::default(); triangulation.index_bound()];
-    // Each edge is seen once from either end: e^(inθ) there is that from here times (−1)ⁿ.
-    let back = if fold.is_multiple_of(2) { 1.0 } else { -1.0 };
-    for edge in triangulation.edges() {
-        let bond = unit_power(edge.vector, fold);
-        sums[edge.from].add(bond);
-        sums[edge.to].add(bond * back);
+    for face in triangulation.faces() {
+        // Each half-edge belongs to one face and to the point where it starts.
+        for (c, &from) in face.vertices.iter().enumerate() {
+            let bond = face.corners[(c + 1) % 3] - face.corners[c];
+            sums[from].add(unit_power(bond, fold));
+        }
     }
-    let order = |index| sums[triangulation.representative(index)].order();
-    let present = |index| triangulation.contains(index);
-    (0..sums.len()).map(|index| if present(index) { order(index) } else { 0.0 }).collect()
+    let mut order: Vec<f64> = sums.iter().map(Bonds::order).collect();
+    if triangulation.point_count() > triangulation.vertex_count() {
+        for index in (0..order.len()).filter(|&index| triangulation.contains(index)) {
+            order[index] = order[triangulation.representative(index)];
+        }
+    }
+    order
 }
 
 /// Qⁿ = (1/N) Σⱼ qⱼⁿ over all N points (thesis eq. B.2); see [`local_bond_orientational_order`].
@@ -65,7 +69,7 @@ impl Bonds {
     }
 
     fn order(&self) -> f64 {
-        (self.sum.length() / self.count).min(1.0)
+        if self.count == 0.0 { 0.0 } else { (self.sum.length() / self.count).min(1.0) }
     }
 }
 

@@ -3,20 +3,9 @@
 use bn_core::DVec2;
 
 use super::Triangulation;
-use super::face::{Edge as HalfEdge, FaceId, next};
+use super::face::{Edge, FaceId, next};
 use super::mesh::Mesh;
 use crate::circle::{Circle, circumcircle};
-
-/// An edge between two points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge {
-    /// Where it starts; a representative where several points coincide.
-    pub from: usize,
-    /// Where it ends; perhaps a copy of the point where it starts.
-    pub to: usize,
-    /// From its start to its end.
-    pub vector: DVec2,
-}
 
 /// A face: three points, counter-clockwise, and their places.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,20 +29,6 @@ impl Triangulation {
     /// of [`Face::corners`].
     pub fn circumcircles(&self) -> impl Iterator<Item = (Face, Circle)> {
         self.faces().map(|face| (face, circumcircle(face.corners)))
-    }
-
-    /// All edges, each once, in either direction. There are three times as many as distinct points.
-    pub fn edges(&self) -> impl Iterator<Item = Edge> {
-        let faces = (0..).zip(&self.mesh.faces).filter(|(_, face)| face.is_alive());
-        faces.flat_map(|(id, face)| {
-            // Of two faces the one of lower id names the edge.
-            let owned = (0..3).filter(move |&c| id < face.twin(c).face());
-            owned.map(|c| Edge {
-                from: face.vertex(c) as usize,
-                to: face.vertex(next(c)) as usize,
-                vector: self.mesh.side(face, c, next(c)),
-            })
-        })
     }
 
     /// The face of this id.
@@ -113,15 +88,15 @@ impl Mesh {
 #[derive(Clone, Debug)]
 struct Around<'a> {
     mesh: &'a Mesh,
-    first: HalfEdge,
-    next: Option<HalfEdge>,
+    first: Edge,
+    next: Option<Edge>,
 }
 
 impl Iterator for Around<'_> {
-    type Item = HalfEdge;
+    type Item = Edge;
 
     #[inline]
-    fn next(&mut self) -> Option<HalfEdge> {
+    fn next(&mut self) -> Option<Edge> {
         let e = self.next?;
         self.next = Some(self.mesh.turn(e)).filter(|&e| e != self.first);
         Some(e)

@@ -22,7 +22,7 @@ use crate::circle::{Circle, circumcircle, circumradius_squared};
 use crate::predicates::snap;
 
 pub use self::face::FaceId;
-pub use self::iter::{Edge, Face, Faces, Neighbors, Star};
+pub use self::iter::{Face, Faces, Neighbors, Star};
 
 /// The Delaunay triangulation of points on the unit torus.
 ///
@@ -40,7 +40,7 @@ pub use self::iter::{Edge, Face, Faces, Neighbors, Star};
 /// points: a square lattice has all its cells cut along the second diagonal, and the order of
 /// insertions and removals leaves no trace.
 ///
-/// *Cost*: 32 bytes a face and 20 a point; insertion near a known face and removal take O(1)
+/// *Cost*: some 100 bytes a point; insertion near a known face and removal take O(1)
 /// expected time and no allocation.
 #[derive(Clone, Debug, Default)]
 pub struct Triangulation {
@@ -148,8 +148,9 @@ impl Triangulation {
         }
     }
 
-    /// Takes out point `index`. O(d²) for a point with d neighbours, d being 6 in the mean; O(n)
-    /// where a point is its own neighbour, which takes an empty circle of radius ½ or more.
+    /// Takes out point `index`. O(d²) for a point with d neighbours, d being 6 in the mean. Where a
+    /// point is its own neighbour, which takes an empty circle of radius ½ or more, everything is
+    /// built anew: O(n²) at worst, as for points on a line that are not numbered along it.
     ///
     /// # Panics
     /// If there is no such point.

@@ -16,8 +16,8 @@ pub struct Chain {
 }
 
 impl Mesh {
-    /// Takes out `vertex`, which the mesh has. O(d²) for a vertex of degree d; O(n) where the
-    /// vertex is its own neighbour, which needs an empty circle of radius ½.
+    /// Takes out `vertex`, which the mesh has. O(d²) for a vertex of degree d; O(n²) at worst where
+    /// the vertex is its own neighbour, which needs an empty circle of radius ½.
     pub fn remove(&mut self, vertex: u32, scratch: &mut Scratch) {
         self.changed.clear();
         if self.gather_star(vertex, &mut scratch.star) {
