@@ -12,6 +12,9 @@ use crate::{Failure, Outcome};
 /// The sets of a file, or of standard input for `-`.
 ///
 /// Without `format` a file's extension decides; on standard input the first bytes do.
+///
+/// # Errors
+/// A file that is bad or absent is bad input; a disk that fails is a failure.
 pub fn read(path: &Path, format: Option<Format>, wrap: bool) -> Outcome<Ensemble> {
     let options = ReadOptions { wrap };
     if path.as_os_str() == "-" {

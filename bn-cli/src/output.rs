@@ -17,6 +17,9 @@ static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 ///
 /// `write` gets a buffered writer; an error of `write` or of the disk leaves no file behind and an
 /// older file of that name as it was.
+///
+/// # Errors
+/// What `write` returns, or that the file cannot be written.
 pub fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> Outcome) -> Outcome {
     write_renamed(path, write).map_err(|failure| {
         if failure.code() == Failure::FAILED {
@@ -50,6 +53,9 @@ fn fill<F: Write>(file: F, write: impl FnOnce(&mut dyn Write) -> Outcome) -> Out
 }
 
 /// Standard output, locked and buffered; a reader that goes away ends the command quietly.
+///
+/// # Errors
+/// What `write` returns, or that standard output cannot be written.
 pub fn write_stdout(write: impl FnOnce(&mut dyn Write) -> Outcome) -> Outcome {
     let mut writer = BufWriter::with_capacity(1 << 16, io::stdout().lock());
     write(&mut writer)?;
@@ -57,6 +63,9 @@ pub fn write_stdout(write: impl FnOnce(&mut dyn Write) -> Outcome) -> Outcome {
 }
 
 /// [`write_file`], or [`write_stdout`] for the name `-`.
+///
+/// # Errors
+/// As those.
 pub fn write_to(path: &Path, write: impl FnOnce(&mut dyn Write) -> Outcome) -> Outcome {
     if path.as_os_str() == "-" { write_stdout(write) } else { write_file(path, write) }
 }

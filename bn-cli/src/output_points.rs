@@ -14,6 +14,9 @@ use crate::{Failure, Outcome, output};
 /// index goes. Standard output (`-`) is `.txt` for one set and `.dat` for several.
 ///
 /// Returns after the last file is complete; each file appears whole or not at all.
+///
+/// # Errors
+/// If the name tells no format, several sets are to go where one fits, or writing fails.
 pub fn write(path: &Path, format: Option<Format>, sets: &[PointSet]) -> Outcome {
     let format = choose(path, format, sets.len())?;
     if has_place(path) || (sets.len() > 1 && !format.holds_ensembles()) {
@@ -33,6 +36,9 @@ pub fn write(path: &Path, format: Option<Format>, sets: &[PointSet]) -> Outcome 
 }
 
 /// Refuses a name whose format can't be told, before any work is done.
+///
+/// # Errors
+/// If the name tells no format and none is given.
 pub fn check(path: &Path, format: Option<Format>) -> Outcome {
     choose(path, format, 1).map(drop)
 }

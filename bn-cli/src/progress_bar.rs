@@ -1,5 +1,6 @@
 //! Progress of long work on standard error, where that is a terminal.
 
+use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -81,7 +82,8 @@ impl Observer for Bar {
         }
         let mut message = progress.stage.to_owned();
         for (name, value) in progress.figures {
-            message.push_str(&format!(" {name} {value:.4}"));
+            // Writing to a string cannot fail.
+            let _ = write!(message, " {name} {value:.4}");
         }
         self.bar.set_message(message);
         self.bar.set_position(progress.done);

@@ -27,7 +27,7 @@ impl Autocorrelation {
     /// g over [−`half_width`, `half_width`)² (unit lengths) in `side` × `side` cells. A cell's value
     /// that c ordered pairs make up has a relative error of about √(2/c): each comes with its reverse.
     ///
-    /// Cost O(n·(1 + n·half_width²)) a set, O(side²) memory a thread.
+    /// Cost O(n·(1 + n·`half_width`²)) a set, O(side²) memory a thread.
     ///
     /// # Panics
     /// If there is no set, `half_width` is not in (0, ½], or `side` is 0 or above
@@ -49,7 +49,9 @@ impl Autocorrelation {
             let pairs = set.len() as f64 * (set.len() as f64 - 1.0);
             // A single point has no pairs; like its RDF, its g is 1.
             if set.len() < 2 {
-                values.iter_mut().for_each(|g| *g += 1.0 / sets.len() as f64);
+                for g in &mut values {
+                    *g += 1.0 / sets.len() as f64;
+                }
                 continue;
             }
             let scale = 1.0 / (pairs * area * sets.len() as f64);

@@ -7,8 +7,9 @@ use rustfft::num_complex::Complex;
 
 use crate::{Nufft, NufftError, NufftOptions};
 
-/// Numbers that a block of columns may hold, in the transform and as power: 128 and 64 MiB.
-const BLOCK_VALUES: usize = 1 << 23;
+/// Numbers that a block of columns may hold: 512 MiB in the transform and up to 256 as power. Every
+/// block spreads all points anew, so few are better.
+const BLOCK_VALUES: usize = 1 << 25;
 
 /// How a periodogram is evaluated: up to which frequency, how accurately.
 ///
@@ -18,7 +19,7 @@ const BLOCK_VALUES: usize = 1 << 23;
 /// mean power of 1e-12 can still be told from 0.
 ///
 /// *Cost*: one NUFFT a set and block of columns, O(n + K² log K) in all for modes |kx|, |ky| ≤ K;
-/// memory O(n + K²) and never above O(n) plus about 300 MiB, whatever K.
+/// memory O(n + K²) and never above O(n) plus about 800 MiB, whatever K.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeriodogramOptions {
     max_frequency: usize,
@@ -75,7 +76,9 @@ impl PeriodogramOptions {
         let mut plan: Nufft =
             NufftOptions::new(self.max_frequency, self.tolerance).expecting(points).plan()?;
         let side = 2 * self.max_frequency + 1;
-        let width = (BLOCK_VALUES / plan.grid_size().max(side)).max(1);
+        let most = (BLOCK_VALUES / plan.grid_size()).max(1);
+        // Blocks of equal width: a narrow last one would cost as much as the others.
+        let width = (self.max_frequency + 1).div_ceil((self.max_frequency + 1).div_ceil(most));
         let mut power = Vec::new();
         for first in (0..=self.max_frequency).step_by(width) {
             let columns = first..(first + width).min(self.max_frequency + 1);

@@ -100,9 +100,10 @@ impl RadialPower {
         // The outermost ring ends half a cycle beyond K, before the next integer.
         options.for_each_block(sets, |block| sums.add(block))?;
         let means: Vec<f64> = (0..rings).map(|i| sums.power[i] / sums.modes[i] as f64).collect();
+        // Unbiased: k and −k are one observation.
         let variance = |i: usize| {
-            let count = sums.modes[i] as f64;
-            (sums.squares[i] / count - means[i] * means[i]).max(0.0)
+            let (count, pairs) = (sums.modes[i] as f64, sums.modes[i] as f64 / 2.0);
+            (sums.squares[i] / count - means[i] * means[i]).max(0.0) * pairs / (pairs - 1.0)
         };
         Ok(Self {
             density: sets[0].density(),
@@ -208,7 +209,7 @@ pub fn power_below(set: &PointSet, frequency: f64) -> Result<Option<f64>, NufftE
             let first = if kx == 0 { limit + 1 } else { 0 };
             for (i, &p) in column.iter().enumerate().skip(first) {
                 let ky = i as i64 - limit as i64;
-                if ((kx * kx) as f64 + (ky * ky) as f64) < frequency * frequency {
+                if ((kx * kx) as f64 + (ky * ky) as f64).sqrt() < frequency {
                     sum += p;
                     count += 1;
                 }

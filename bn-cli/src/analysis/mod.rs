@@ -141,7 +141,7 @@ impl<'a> Analysis<'a> {
         direct::shown_frequency(self.density)
     }
 
-    /// `d_min` and `d_avg` of each set, over d_hex.
+    /// `d_min` and `d_avg` of each set, over `d_hex`.
     fn spacings(&self) -> &[[f64; 2]] {
         self.spacings.get_or_init(|| {
             self.each(|set| {
@@ -151,7 +151,7 @@ impl<'a> Analysis<'a> {
         })
     }
 
-    /// Coverage radius over d_hex and Q⁶ of each set, which share the triangulation.
+    /// Coverage radius over `d_hex` and Q⁶ of each set, which share the triangulation.
     fn shapes(&self) -> &[[f64; 2]] {
         self.shapes.get_or_init(|| {
             self.each(|set| {

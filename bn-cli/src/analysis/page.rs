@@ -7,7 +7,7 @@ use super::{Analysis, Statistic, WINDOWED_LIMIT};
 use crate::plot::{Grid, Text};
 use crate::report::{self, ReportData};
 
-/// Distances are shown up to this many d_hex, or half the torus.
+/// Distances are shown up to this many `d_hex`, or half the torus.
 const RANGE: f64 = 8.0;
 /// Bins of the RDF over that range, where there are points enough to fill them.
 const RDF_BINS: usize = 400;
@@ -20,7 +20,12 @@ impl Analysis<'_> {
     /// The data of the page, with the spectrum up to `max_frequency` cycles per unit.
     ///
     /// The windowed statistics are left out above [`WINDOWED_LIMIT`] points a set.
-    pub fn report_data(&self, title: String, provenance: String, max_frequency: usize) -> ReportData {
+    pub fn report_data(
+        &self,
+        title: String,
+        provenance: String,
+        max_frequency: usize,
+    ) -> ReportData {
         let n = self.sets[0].len();
         let range = (RANGE * self.density.hexagonal_spacing()).min(0.5);
         let radial = self.radial_power(max_frequency);
@@ -32,7 +37,9 @@ impl Analysis<'_> {
             points: self.sets[0].points().to_vec(),
             autocorrelation: self.autocorrelation(range),
             spectrum: self.spectrum(max_frequency),
-            anisotropy: radial.anisotropy_db().map_or_else(undefined, |c| over_nyquist(&c, self.density)),
+            anisotropy: radial
+                .anisotropy_db()
+                .map_or_else(undefined, |c| over_nyquist(&c, self.density)),
             rdf: over_spacing(&self.rdf_within(range, self.rdf_bins(range)), self.density),
             radial_power: radial.curve().map_or_else(undefined, |c| over_nyquist(&c, self.density)),
             statistics: self.page_statistics(n <= WINDOWED_LIMIT),

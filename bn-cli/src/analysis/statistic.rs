@@ -9,11 +9,11 @@ use crate::Failure;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Statistic {
-    /// Smallest nearest-neighbour distance, over d_hex; mean over the sets.
+    /// Smallest nearest-neighbour distance, over `d_hex`; mean over the sets.
     MinDistance,
-    /// Mean nearest-neighbour distance, over d_hex; mean over the sets.
+    /// Mean nearest-neighbour distance, over `d_hex`; mean over the sets.
     MeanDistance,
-    /// Radius of the largest circle that holds no point, over d_hex; mean over the sets.
+    /// Radius of the largest circle that holds no point, over `d_hex`; mean over the sets.
     CoverageRadius,
     /// Bond-orientational order Q⁶ over Delaunay neighbours; mean over the sets.
     BondOrder,

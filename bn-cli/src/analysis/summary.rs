@@ -39,6 +39,9 @@ impl Summary {
     }
 
     /// The summary as a block of lines: key, value ± standard error, meaning.
+    ///
+    /// # Errors
+    /// If `w` fails.
     pub fn write_text(&self, w: &mut dyn Write) -> Outcome {
         writeln!(w, "{}", self.files.join(" "))?;
         let sets = if self.sets == 1 { "set" } else { "sets" };

@@ -31,7 +31,7 @@ struct Generate {
           value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     sets: u32,
     /// File to write, `-` for standard output. Several sets go into one .dat, .npy or .json, or into
-    /// name_0.ext, name_1.ext, ... ; {i} in the name says where the index goes
+    /// `name_0.ext`, `name_1.ext`, ... ; {i} in the name says where the index goes
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
     /// Format of the output (default: by the file's extension; txt or dat on standard output)
@@ -76,10 +76,7 @@ fn method_command(method: &'static Method) -> Command {
 
 fn option_argument(spec: &'static OptionSpec) -> Arg {
     let unit = if spec.unit.is_empty() { String::new() } else { format!(" [{}]", spec.unit) };
-    let default = match spec.default {
-        DefaultValue::Value(text) => format!("default: {text}"),
-        DefaultValue::Absent(text) => format!("default: {text}"),
-    };
+    let default = format!("default: {}", spec.default);
     let argument = Arg::new(spec.name).long(spec.name).help_heading("Options of the method");
     match spec.kind {
         // `--flag` alone is true; `--flag=false` is possible too.

@@ -67,6 +67,9 @@ pub fn command() -> Command {
 /// Runs `bn` with these arguments, the program's name first.
 ///
 /// Requests for help and mistakes in the arguments end the process as clap does: 0 and 2.
+///
+/// # Errors
+/// What the command ended with when it did not end well.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Outcome {
     let matches = command().try_get_matches_from(arguments).unwrap_or_else(|error| error.exit());
     let global = parsed::<Global>(&matches)?;

@@ -85,7 +85,7 @@ impl Job for AddColumn<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let limit = self.phasors.max_frequency;
-        for (chunk, points) in self.phasors.y.chunks_exact(self.phasors.points).enumerate() {
+        for (chunk, points) in self.phasors.y.chunks_exact(self.phasors.points.max(1)).enumerate() {
             // Σ a cos, Σ a sin: together they give ky and −ky.
             let mut sums = [[0.0; LANES]; 4];
             for ([cos, sin], a) in points.iter().zip(self.strengths) {
@@ -110,7 +110,7 @@ impl Job for AddColumn<'_> {
     }
 }
 
-/// Type 2 sums along one column: for each point, Σ_ky f(ky) e^(+2πi ky y).
+/// Type 2 sums along one column: for each point, Σ f(ky) e^(+2πi ky y) over ky.
 struct SumColumn<'a> {
     phasors: &'a Phasors,
     modes: &'a [Complex<f64>],
@@ -124,7 +124,7 @@ impl Job for SumColumn<'_> {
     fn run<const FUSED: bool>(self) {
         let limit = self.phasors.max_frequency;
         self.sums.fill(Complex::new(0.0, 0.0));
-        for (chunk, points) in self.phasors.y.chunks_exact(self.phasors.points).enumerate() {
+        for (chunk, points) in self.phasors.y.chunks_exact(self.phasors.points.max(1)).enumerate() {
             let first = chunk * LANES;
             let mut even = [Complex::new(0.0, 0.0); LANES];
             let mut odd = even;
@@ -193,7 +193,9 @@ impl Phasors {
             fill(kx, &mut modes);
             if kx == 0 {
                 // Both of each pair ±(0, ky) are there, one of each ±(kx, ky).
-                modes.iter_mut().for_each(|mode| *mode *= 0.5);
+                for mode in &mut modes {
+                    *mode *= 0.5;
+                }
             }
             self.add_sums(&modes, kx as i64, simd, &mut totals[..self.points]);
         }

@@ -17,6 +17,15 @@
 //! times that of Σ|wⱼ|, wherever the points lie. Below some tens of points the sums are taken
 //! term by term, to rounding.
 
+#![expect(
+    clippy::inline_always,
+    reason = "kernels are compiled once for each instruction set: what they call has to be part of them"
+)]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops over lanes index several arrays alike, which is what vectorises"
+)]
+
 mod design;
 mod direct;
 mod kernel;
@@ -360,6 +369,7 @@ impl<T: Real> ModeColumns<'_, T> {
         type1::transform_columns(tables, kept, spectrum, columns, outputs, workers, take);
     }
 
+    #[expect(clippy::type_complexity, reason = "a callback that is passed on once")]
     fn each_direct<O>(
         &self,
         strengths: Strengths<'_>,

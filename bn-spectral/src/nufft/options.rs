@@ -56,7 +56,7 @@ impl NufftOptions {
     ///
     /// Expects (K/5)² points: a range of ten times their √n/2.
     pub fn new(max_frequency: usize, tolerance: f64) -> Self {
-        let points = (max_frequency / 5).pow(2).max(1);
+        let points = (max_frequency / 5).saturating_pow(2).max(1);
         Self { max_frequency, tolerance, points, parallel: true, portable: false }
     }
 
@@ -80,6 +80,9 @@ impl NufftOptions {
     }
 
     /// Chooses grid and kernel and computes the tables. Cost: some milliseconds.
+    ///
+    /// # Errors
+    /// If the tolerance is no positive number or K is beyond [`Self::MAX_FREQUENCY`].
     pub fn plan<T: Real>(self) -> Result<Nufft<T>, NufftError> {
         let Self { max_frequency, tolerance, points, parallel, portable } = self;
         if tolerance.is_nan() || tolerance <= 0.0 {

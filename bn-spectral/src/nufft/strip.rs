@@ -47,7 +47,7 @@ impl Strips {
         let rows = grid / packing.grid_rows_each();
         let least = MAX_WIDTH / packing.grid_rows_each();
         let wanted = (1 << 19) / (std::mem::size_of::<Complex<T>>() * grid);
-        let fits = |height: &usize| rows % height == 0 || rows % height >= least;
+        let fits = |height: &usize| rows.is_multiple_of(*height) || rows % height >= least;
         let height = (least..=wanted.clamp(least, 32)).rev().find(fits);
         let height = height.or_else(|| (least..rows).find(fits)).unwrap_or(rows);
         Self { grid, packing, height }

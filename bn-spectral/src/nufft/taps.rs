@@ -43,6 +43,7 @@ impl<'a> Strengths<'a> {
 
 /// The tap polynomials of a kernel, and the instructions to evaluate them with.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_field_names, reason = "the taps of a row are what the word means")]
 pub(super) struct Taps<T> {
     width: usize,
     /// Taps a row, 4, 8, 12 or 16.

@@ -44,7 +44,8 @@ pub(super) fn transform_rows<T: Real>(
     let wanted = first..first + columns.range.len();
     let size = wanted.len() * strips.packing.grid_rows_each() * strips.height;
     spectrum.resize(wanted.len() * tables.grid(), Complex::new(T::default(), T::default()));
-    workers.each(spectrum.chunks_mut(size).collect(), |index, chunk: &mut [_], worker| {
+    // Without columns there is nothing to do, in chunks of any size.
+    workers.each(spectrum.chunks_mut(size.max(1)).collect(), |index, chunk: &mut [_], worker| {
         let mut strip = Strip::new(strips, index, &mut worker.strip);
         strip.clear();
         let (before, shift) = strips.reaching(index, tables.width());

@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn larger_ensembles_spread_less() {
-        let design = Design { points: 64, sets: &[1, 16], ensembles: 8 };
+        let design = Design { points: 256, sets: &[1, 16], ensembles: 8 };
         let pool = pool(bn_samplers::find("stochastic").expect("there"), &design).expect("made");
         let omega = |sets: usize| spread(&pool[..8 * sets], sets, ESTIMATORS[0].1).omega;
         // E Omega falls as the root of the number of sets: to a quarter from 1 to 16.

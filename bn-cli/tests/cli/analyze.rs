@@ -1,10 +1,6 @@
 //! `bn analyze` as scripts call it.
 
-#![expect(clippy::unwrap_used, reason = "a test that can't go on should stop")]
-
-mod common;
-
-use common::Folder;
+use crate::folder::Folder;
 
 const KEYS: [&str; 9] = [
     "d_min",
@@ -136,7 +132,8 @@ fn bad_files_are_named_with_the_mend() {
 fn degenerate_sets_have_statistics() {
     let folder = Folder::new();
     let repeated = "0.25 0.75\n".repeat(50);
-    let collinear: String = (0..40).map(|i| format!("{} 0.5\n", f64::from(i) / 40.0)).collect();
+    let collinear =
+        (0..40).fold(String::new(), |text, i| text + &format!("{} 0.5\n", f64::from(i) / 40.0));
     let cases = [
         ("one.txt", "0.5 0.5\n"),
         ("two.txt", "0.5 0.5\n0.5 0.5\n"),

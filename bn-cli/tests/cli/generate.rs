@@ -1,10 +1,6 @@
 //! `bn generate`, `bn list` and `bn convert` as scripts call them.
 
-#![expect(clippy::unwrap_used, reason = "a test that can't go on should stop")]
-
-mod common;
-
-use common::Folder;
+use crate::folder::Folder;
 
 #[test]
 fn one_set_goes_to_standard_output_as_psa_reads_it() {

@@ -1,0 +1,8 @@
+//! `bn` as scripts call it.
+
+#![expect(clippy::unwrap_used, reason = "a test that can't go on should stop")]
+
+mod analyze;
+mod folder;
+mod generate;
+mod report;
