@@ -78,7 +78,7 @@ fn narrowest(grid: usize, modes: usize, tolerance: f64, epsilon: f64) -> Option<
         let errors = kernel.errors(upsampling);
         // Rounding measured at 1 to 3 ε; the polynomials get a tenth of the tolerance.
         let rounding = 3.0 * epsilon * errors.magnification.powi(2);
-        let error = 1.1 * errors.aliasing.hypot(rounding).hypot(0.1 * tolerance);
+        let error = 1.4 * errors.aliasing.hypot(rounding).hypot(0.1 * tolerance);
         let better = best.as_ref().is_none_or(|b| error < b.error);
         if better {
             best = Some(Design {
