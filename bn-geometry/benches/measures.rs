@@ -4,7 +4,8 @@ use std::hint::black_box;
 
 use bn_core::{DVec2, PointSet, Seed};
 use bn_geometry::{
-    Coverage, EmptyCircles, Spacing, Triangulation, bond_orientational_order, voronoi_cells_into,
+    Coverage, EmptyCircles, PowerDiagram, Spacing, Triangulation, bond_orientational_order,
+    voronoi_cells_into,
 };
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rand::RngExt;
@@ -65,5 +66,31 @@ fn everything(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, spacing, triangulated, everything);
+/// Voronoi cells cut one by one: of random points (widely varying cells) and of a jittered lattice.
+fn power_diagram(c: &mut Criterion) {
+    let mut group = c.benchmark_group("power_diagram");
+    for side in [64, 256] {
+        let n = side * side;
+        let mut rng = Seed::new(2).stream(0);
+        let jittered = (0..n).map(|i| {
+            let cell = DVec2::new((i % side) as f64, (i / side) as f64);
+            (cell + DVec2::new(rng.random(), rng.random())) / side as f64
+        });
+        let jittered = PointSet::new(jittered.collect()).expect("valid points");
+        group.throughput(Throughput::Elements(n as u64));
+        for (name, set) in [("random", random_set(n)), ("jittered", jittered)] {
+            let weights = vec![0.0; n];
+            group.bench_function(BenchmarkId::new(format!("{name}/new"), n), |b| {
+                b.iter(|| PowerDiagram::new(black_box(&set), &weights));
+            });
+            let mut diagram = PowerDiagram::new(&set, &weights);
+            group.bench_function(BenchmarkId::new(format!("{name}/update"), n), |b| {
+                b.iter(|| diagram.update(black_box(&set), &weights));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, spacing, triangulated, everything, power_diagram);
 criterion_main!(benches);

@@ -4,7 +4,7 @@
 //! Delaunay triangulation on the torus, which points can join and leave; from it come the
 //! [`Coverage`] radius with the place farthest from all points, [`voronoi_cells`] with their areas,
 //! centroids and moments, and the [`bond_orientational_order`] Qⁿ; [`EmptyCircles`] keeps its faces
-//! in order while it changes. All of it is defined for every set
+//! in order while it changes. A [`PowerDiagram`] gives the points weights. All of it is defined for every set
 //! of at least one point: coincident and collinear points, lattices and points on the seam included.
 //!
 //! ```
@@ -35,6 +35,7 @@ mod empty_circles;
 mod hilbert;
 mod max_tree;
 mod order;
+mod power;
 mod predicates;
 mod spacing;
 mod triangulation;
@@ -44,6 +45,7 @@ pub use circle::Circle;
 pub use coverage::Coverage;
 pub use empty_circles::EmptyCircles;
 pub use order::{bond_orientational_order, local_bond_orientational_order};
+pub use power::{PowerDiagram, PowerEdge, PowerNeighbor};
 pub use spacing::Spacing;
 pub use triangulation::{Face, FaceId, Faces, Location, Neighbors, Star, Triangulation};
 pub use voronoi::{VoronoiCell, voronoi_cells, voronoi_cells_into};

@@ -76,7 +76,7 @@ fn add_face(cells: &mut [VoronoiCell], face: &Face, circle: Circle) {
 impl VoronoiCell {
     /// Adds the triangle with the corners 0, a and b relative to the point, and the given area.
     #[inline]
-    fn add_triangle(&mut self, area: f64, a: DVec2, b: DVec2) {
+    pub(crate) fn add_triangle(&mut self, area: f64, a: DVec2, b: DVec2) {
         self.area += area;
         self.to_centroid += (a + b) * (area / 3.0);
         self.second_moment += area / 6.0 * (a.length_squared() + a.dot(b) + b.length_squared());

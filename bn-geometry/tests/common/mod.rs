@@ -135,3 +135,42 @@ pub fn canonical_face(corners: [DVec2; 3]) -> [[u64; 2]; 3] {
     };
     [turned(0), turned(1), turned(2)].into_iter().min().expect("three corners")
 }
+
+/// The cell of a point in the power diagram, about the point: cut out of a large square by the
+/// bisectors to all copies of all points.
+pub fn clipped_cell(points: &[DVec2], weights: &[f64], index: usize) -> Vec<DVec2> {
+    let mut cell = vec![at(-1.5, -1.5), at(1.5, -1.5), at(1.5, 1.5), at(-1.5, 1.5)];
+    for (k, q) in copies(points).enumerate() {
+        let d = q - points[index];
+        if d == DVec2::ZERO {
+            continue;
+        }
+        let offset = 0.5 * (d.length_squared() + (weights[index] - weights[k % points.len()]));
+        let beyond = |x: DVec2| x.dot(d) - offset;
+        let mut kept = Vec::new();
+        for (i, &a) in cell.iter().enumerate() {
+            let b = cell[(i + 1) % cell.len()];
+            if beyond(a) <= 0.0 {
+                kept.push(a);
+            }
+            if (beyond(a) < 0.0) != (beyond(b) < 0.0) && beyond(a) != beyond(b) {
+                kept.push(a + (b - a) * (beyond(a) / (beyond(a) - beyond(b))));
+            }
+        }
+        cell = kept;
+    }
+    cell
+}
+
+/// Area, first moment and second moment of a polygon about the origin.
+pub fn moments(polygon: &[DVec2]) -> (f64, DVec2, f64) {
+    let (mut area, mut first, mut second) = (0.0, DVec2::ZERO, 0.0);
+    for (i, &a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        let part = 0.5 * a.perp_dot(b);
+        area += part;
+        first += (a + b) * (part / 3.0);
+        second += part / 6.0 * (a.length_squared() + a.dot(b) + b.length_squared());
+    }
+    (area, first, second)
+}
