@@ -4,6 +4,7 @@
 //! - [`analysis`]: every statistic of a point set or an ensemble, each computed at most once and
 //!   only if asked for;
 //! - [`plot`] and [`report`]: figures as SVG (and PNG, with the feature `report`);
+//! - [`input`], [`density`]: point files, and density functions from images and formulas;
 //! - [`output`]: files that appear whole or not at all;
 //! - [`commands`]: the subcommands of `bn`.
 //!
@@ -11,6 +12,7 @@
 
 pub mod analysis;
 pub mod commands;
+pub mod density;
 mod failure;
 pub mod input;
 pub mod output;

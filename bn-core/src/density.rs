@@ -11,7 +11,22 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Density {
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "positive"))]
     points: f64,
+}
+
+/// A number of points that units can follow from.
+#[cfg(feature = "serde")]
+fn positive<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    use serde::{Deserialize, de};
+    let points = f64::deserialize(deserializer)?;
+    if points >= 1.0 && points.is_finite() {
+        return Ok(points);
+    }
+    Err(de::Error::invalid_value(
+        de::Unexpected::Float(points),
+        &"a number of points of at least 1",
+    ))
 }
 
 impl Density {
@@ -105,5 +120,15 @@ mod tests {
         assert!((density.normalize_distance(0.25).to_unit_lengths(density) - 0.25).abs() < 1e-15);
         assert_eq!(density.normalize_frequency(48.0).value(), 1.5);
         assert_eq!(NormalizedFrequency::new(2.0).to_cycles_per_unit(density), 64.0);
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn only_a_number_of_points_deserializes() {
+        let read = |text: &str| serde_json::from_str::<Density>(text);
+        assert_eq!(read(r#"{"points":4096.0}"#).expect("valid"), Density::new(4096));
+        for points in ["0", "-1.0", "0.5", "1e999", "null"] {
+            assert!(read(&format!(r#"{{"points":{points}}}"#)).is_err(), "{points}");
+        }
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! The domain is the unit square [0, 1)² with opposite sides identified. A [`PointSet`] can only
 //! hold points of that domain, an [`Ensemble`] several sets; [`torus`] measures distances on it,
-//! [`Density`] knows the length and frequency that results are normalised by, [`CellGrid`] answers
-//! neighbour queries, [`Curve`] holds a sampled function, [`Seed`] gives independent random
+//! [`Density`] knows the length and frequency that results are normalised by, [`DensityFunction`]
+//! says where points are wanted how densely, [`CellGrid`] answers neighbour queries, [`Curve`] holds a sampled function, [`Seed`] gives independent random
 //! streams that are the same on every machine, and [`io`] reads and writes point files.
 //!
 //! ```
@@ -21,6 +21,7 @@
 mod cell_grid;
 mod curve;
 mod density;
+mod density_function;
 pub mod io;
 mod point_set;
 mod progress;
@@ -30,6 +31,7 @@ pub mod torus;
 pub use cell_grid::CellGrid;
 pub use curve::Curve;
 pub use density::{Density, NormalizedDistance, NormalizedFrequency};
+pub use density_function::{DensityFunction, DensityFunctionError};
 pub use glam::DVec2;
 pub use point_set::{Ensemble, EnsembleError, PointSet, PointSetError};
 pub use progress::{Observer, Progress, Unobserved};

@@ -10,7 +10,7 @@
 //! use bn_samplers::{Sampler, Stochastic};
 //!
 //! // A method chosen in the code, options typed …
-//! let sample = Stochastic.sample(256, Seed::new(1), &Unobserved)?;
+//! let sample = Stochastic::default().sample(256, Seed::new(1), &Unobserved)?;
 //! assert_eq!(sample.points.len(), 256);
 //!
 //! // … and the same one chosen by name, options as text.
@@ -52,7 +52,8 @@ pub use jittered::{Displacement, Jittered};
 pub use lloyd::Lloyd;
 pub use method::{CountRule, Method, PointOrder};
 pub use net::{Construction, Net};
-pub use options::{DefaultValue, OptionError, OptionKind, OptionSpec, OptionValues};
+pub(crate) use options::DENSITY_OPTION;
+pub use options::{DefaultValue, Given, OptionError, OptionKind, OptionSpec, OptionValues};
 pub use poisson_disk::dart_throwing::DartThrowing;
 pub use poisson_disk::maximal::MaximalPoissonDisk;
 pub use r2::R2;

@@ -80,7 +80,7 @@ impl Sampler for Lloyd {
             return Err(SampleError::InvalidOption { option: "tolerance", reason });
         }
         let density = Density::new(n);
-        let mut points = Stochastic.sample(n, seed, observer)?.points;
+        let mut points = Stochastic::default().sample(n, seed, observer)?.points;
         let mut cells = Vec::new();
         let (mut done, mut farthest) = (0, f64::INFINITY);
         while done < self.iterations && farthest > self.tolerance.value() {
@@ -131,7 +131,8 @@ mod tests {
 
     #[test]
     fn the_energy_falls() {
-        let mut points = Stochastic.sample(200, Seed::new(4), &Unobserved).expect("valid").points;
+        let mut points =
+            Stochastic::default().sample(200, Seed::new(4), &Unobserved).expect("valid").points;
         let mut before = energy(&points);
         for _ in 0..50 {
             points = relax(points, &mut Vec::new()).0;
@@ -162,6 +163,9 @@ mod tests {
         assert_eq!(report.get("converged"), Some(true.into()));
         let none = Lloyd { iterations: 0, ..method };
         let start = none.sample(16, Seed::new(1), &Unobserved).expect("valid").points;
-        assert_eq!(start, Stochastic.sample(16, Seed::new(1), &Unobserved).expect("valid").points);
+        assert_eq!(
+            start,
+            Stochastic::default().sample(16, Seed::new(1), &Unobserved).expect("valid").points
+        );
     }
 }

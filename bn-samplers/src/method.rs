@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::{OptionError, OptionSpec, OptionValues, Sampler};
+use crate::{Given, OptionError, OptionSpec, OptionValues, Sampler};
 
 /// A method of the registry: its names, its sources, its options and how to build its [`Sampler`].
 #[derive(Clone, Copy)]
@@ -42,6 +42,18 @@ impl Method {
     pub fn with_options<'a>(
         &self,
         given: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Result<Box<dyn Sampler>, OptionError> {
+        self.with_values(given.into_iter().map(|(name, text)| (name, Given::Text(text))))
+    }
+
+    /// The sampler with these options, among them point sets and density functions that the
+    /// caller has read; the defaults for those left out.
+    ///
+    /// # Errors
+    /// As [`Method::with_options`].
+    pub fn with_values<'a>(
+        &self,
+        given: impl IntoIterator<Item = (&'a str, Given<'a>)>,
     ) -> Result<Box<dyn Sampler>, OptionError> {
         (self.build)(&OptionValues::parse(self.name, self.options, given)?)
     }

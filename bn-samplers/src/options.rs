@@ -1,7 +1,9 @@
 //! The options of methods as text: what a command line or a file says, checked and typed.
 
 use std::fmt;
+use std::sync::Arc;
 
+use bn_core::{DensityFunction, PointSet};
 use thiserror::Error;
 
 use crate::names::nearest_name;
@@ -46,6 +48,21 @@ pub enum OptionKind {
     Choice(&'static [&'static str]),
     /// Any text.
     Text,
+    /// A point set, which the caller has read: [`Given::Points`].
+    Points,
+    /// A density function, which the caller has read: [`Given::Density`].
+    Density,
+}
+
+/// The value of an option as it is given.
+#[derive(Clone, Debug)]
+pub enum Given<'a> {
+    /// As text, for all kinds but the following.
+    Text(&'a str),
+    /// For [`OptionKind::Points`].
+    Points(Arc<PointSet>),
+    /// For [`OptionKind::Density`].
+    Density(Arc<DensityFunction>),
 }
 
 /// What holds if an option isn't given.
@@ -78,9 +95,22 @@ impl fmt::Display for OptionKind {
             Self::Real { min, max } => write!(f, "a number from {min} to {max}"),
             Self::Choice(words) => write!(f, "one of {}", words.join(", ")),
             Self::Text => f.write_str("text"),
+            Self::Points => f.write_str("a file of points"),
+            Self::Density => {
+                f.write_str("a grey image, dark where points are dense, or a formula of x and y")
+            }
         }
     }
 }
+
+/// The option of every method that serves a density function.
+pub(crate) const DENSITY_OPTION: OptionSpec = OptionSpec {
+    name: "density",
+    kind: OptionKind::Density,
+    default: DefaultValue::Absent("uniform"),
+    help: "where the points are to be how dense",
+    unit: "",
+};
 
 /// Why texts don't make [`OptionValues`].
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -146,6 +176,8 @@ enum Value {
     Real(f64),
     Choice(&'static str),
     Text(String),
+    Points(Arc<PointSet>),
+    Density(Arc<DensityFunction>),
 }
 
 /// The options given for one method: checked against its [`OptionSpec`]s, defaults filled in.
@@ -155,25 +187,33 @@ pub struct OptionValues {
 }
 
 impl OptionValues {
-    /// Checks (name, text) pairs against what `method` takes.
+    /// Checks (name, value) pairs against what `method` takes.
     ///
     /// # Errors
-    /// [`OptionError`] for a name that the method doesn't know, a name given twice, or a text that
-    /// is not a value of the option's kind.
+    /// [`OptionError`] for a name that the method doesn't know, a name given twice, or a value that
+    /// is not of the option's kind.
     pub fn parse<'a>(
         method: &'static str,
         specs: &'static [OptionSpec],
-        given: impl IntoIterator<Item = (&'a str, &'a str)>,
+        given: impl IntoIterator<Item = (&'a str, Given<'a>)>,
     ) -> Result<Self, OptionError> {
         let mut values: Vec<_> = specs.iter().map(|spec| (spec, None)).collect();
-        for (name, text) in given {
+        for (name, value) in given {
             let Some((spec, slot)) = values.iter_mut().find(|(spec, _)| spec.name == name) else {
                 return Err(unknown(method, specs, name));
             };
             if slot.is_some() {
                 return Err(OptionError::Repeated { option: spec.name });
             }
-            *slot = Some(parse_value(spec, text)?);
+            *slot = Some(match value {
+                Given::Text(text) => parse_value(spec, text)?,
+                Given::Points(points) if spec.kind == OptionKind::Points => Value::Points(points),
+                Given::Density(density) if spec.kind == OptionKind::Density => {
+                    Value::Density(density)
+                }
+                Given::Points(_) => return Err(invalid(spec, "a point set")),
+                Given::Density(_) => return Err(invalid(spec, "a density function")),
+            });
         }
         for (spec, slot) in &mut values {
             if let (None, DefaultValue::Value(text)) = (&slot, spec.default) {
@@ -243,6 +283,30 @@ impl OptionValues {
         }
     }
 
+    /// The point set `name`; `None` if not given.
+    ///
+    /// # Panics
+    /// As [`OptionValues::flag`].
+    pub fn points(&self, name: &str) -> Option<Arc<PointSet>> {
+        match self.get(name) {
+            None => None,
+            Some(Value::Points(points)) => Some(Arc::clone(points)),
+            other => wrong_kind(name, other),
+        }
+    }
+
+    /// The density function `name`; `None` if not given.
+    ///
+    /// # Panics
+    /// As [`OptionValues::flag`].
+    pub fn density(&self, name: &str) -> Option<Arc<DensityFunction>> {
+        match self.get(name) {
+            None => None,
+            Some(Value::Density(density)) => Some(Arc::clone(density)),
+            other => wrong_kind(name, other),
+        }
+    }
+
     fn get(&self, name: &str) -> Option<&Value> {
         match self.values.iter().find(|(spec, _)| spec.name == name) {
             Some((_, value)) => value.as_ref(),
@@ -276,14 +340,19 @@ fn parse_value(spec: &'static OptionSpec, text: &str) -> Result<Value, OptionErr
             words.iter().find(|word| **word == trimmed).map(|word| Value::Choice(word))
         }
         OptionKind::Text => Some(Value::Text(text.to_owned())),
+        OptionKind::Points | OptionKind::Density => None,
     };
-    value.ok_or_else(|| OptionError::Invalid {
+    value.ok_or_else(|| invalid(spec, text))
+}
+
+fn invalid(spec: &OptionSpec, text: &str) -> OptionError {
+    OptionError::Invalid {
         option: spec.name,
         text: text.to_owned(),
         kind: spec.kind,
         nearest: match spec.kind {
-            OptionKind::Choice(words) => nearest_name(trimmed, words.iter().copied()),
+            OptionKind::Choice(words) => nearest_name(text.trim(), words.iter().copied()),
             _ => None,
         },
-    })
+    }
 }

@@ -1,18 +1,23 @@
 //! Uniform random points.
 
-use bn_core::{DVec2, Observer, Progress, Seed};
+use std::sync::Arc;
+
+use bn_core::{DVec2, DensityFunction, Observer, Progress, Seed};
 use rand::RngExt;
 use rayon::prelude::*;
 
 use crate::error::{check_count, observe, reserve};
-use crate::{CountRule, Method, PointOrder, Report, Sample, SampleError, Sampler};
+use crate::{CountRule, DENSITY_OPTION, Method, PointOrder, Report, Sample, SampleError, Sampler};
 
 /// Points drawn independently and uniformly: a Poisson process given its count, P(k) = 1.
 ///
-/// Coordinates are multiples of 2⁻⁵³. Thesis §3.3 and p. 107; R. L. Cook, "Stochastic sampling in
-/// computer graphics", ACM Trans. Graph. 5(1), 1986.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stochastic;
+/// Coordinates of the uniform density are multiples of 2⁻⁵³. Thesis §3.3 and p. 107; R. L. Cook,
+/// "Stochastic sampling in computer graphics", ACM Trans. Graph. 5(1), 1986.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stochastic {
+    /// The density of the points, uniform if there is none.
+    pub density: Option<Arc<DensityFunction>>,
+}
 
 /// The registry's entry.
 pub(crate) const METHOD: Method = Method {
@@ -25,8 +30,8 @@ pub(crate) const METHOD: Method = Method {
     order: PointOrder::Random,
     counts: CountRule::Any,
     seeded: true,
-    options: &[],
-    build: |_| Ok(Box::new(Stochastic)),
+    options: &[DENSITY_OPTION],
+    build: |options| Ok(Box::new(Stochastic { density: options.density(DENSITY_OPTION.name) })),
     version: 1,
 };
 
@@ -37,7 +42,11 @@ impl Sampler for Stochastic {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
         check_count(METHOD.name, n)?;
         observe(observer, &Progress::new("drawing", 0, Some(n as u64)))?;
-        Ok(Sample::new(uniform_points(n, seed, 0)?, Report::new()))
+        let mut points = uniform_points(n, seed, 0)?;
+        if let Some(density) = &self.density {
+            points.par_iter_mut().for_each(|p| *p = density.place(*p));
+        }
+        Ok(Sample::new(points, Report::new()))
     }
 }
 
@@ -66,7 +75,7 @@ mod tests {
     #[test]
     fn coordinates_are_uniform() {
         let n = 100_000;
-        let sample = Stochastic.sample(n, Seed::new(3), &Unobserved).expect("valid");
+        let sample = Stochastic::default().sample(n, Seed::new(3), &Unobserved).expect("valid");
         for axis in 0..2 {
             // Chi-squared over 64 equal bins: mean 63, variance 126; 5 standard deviations.
             let mut bins = [0_u32; 64];
@@ -77,6 +86,26 @@ mod tests {
             let chi2: f64 =
                 bins.iter().map(|&b| (f64::from(b) - expected).powi(2) / expected).sum();
             assert!((chi2 - 63.0).abs() < 5.0 * 126.0_f64.sqrt(), "axis {axis}: {chi2}");
+        }
+    }
+
+    #[test]
+    fn counts_follow_the_density() {
+        let n = 40_000;
+        let density = DensityFunction::from_fn(64, |p| p.x + 0.5 * p.y).expect("valid");
+        let method = Stochastic { density: Some(Arc::new(density.clone())) };
+        let sample = method.sample(n, Seed::new(7), &Unobserved).expect("valid");
+        let mut counts = [0_u32; 64];
+        for p in sample.points.points() {
+            counts[(p.y * 8.0) as usize * 8 + (p.x * 8.0) as usize] += 1;
+        }
+        for (block, &count) in counts.iter().enumerate() {
+            let low = DVec2::new((block % 8) as f64, (block / 8) as f64) / 8.0;
+            let part = density.mass(low, low + DVec2::splat(0.125));
+            let mean = part * n as f64;
+            // Binomial counts; 5 standard deviations.
+            let sd = (mean * (1.0 - part)).sqrt();
+            assert!((f64::from(count) - mean).abs() < 5.0 * sd, "block {block}: {count}, {mean}");
         }
     }
 }

@@ -148,6 +148,7 @@ fn extremes(kind: OptionKind) -> (Vec<String>, Vec<String>) {
             (words.iter().map(|&word| word.into()).collect(), vec!["nosuch".into()])
         }
         OptionKind::Text => (vec![], vec![]),
+        OptionKind::Points | OptionKind::Density => (vec![], vec!["text".into()]),
     };
     if kind != OptionKind::Text {
         invalid.push(String::new());

@@ -1,6 +1,6 @@
 //! What comes from the exact periodogram.
 
-use bn_core::{Curve, Density, PointSet};
+use bn_core::{Density, PointSet};
 use bn_spectral::{PeriodogramOptions, RadialPower};
 
 use super::Estimate;
@@ -35,11 +35,6 @@ impl Direct {
         let left_out = left_out.collect();
         let mean = RadialPower::mean_of(&each.iter().collect::<Vec<_>>());
         Self { mean, left_out }
-    }
-
-    /// The radial power spectrum at the rings' centres, mean over the sets.
-    pub fn power(&self) -> Option<Curve> {
-        self.mean.curve()
     }
 
     pub(super) fn effective_nyquist(&self) -> Option<Estimate> {

@@ -30,8 +30,9 @@ pub(super) struct Analyze {
     /// Mean power of the modes 0 < |k| < NU, in cycles per unit
     #[arg(long, value_name = "NU", allow_negative_numbers = true)]
     power_below: Option<f64>,
-    /// Write a curve as CSV instead (to -o)
-    #[arg(long, value_enum, requires = "output", conflicts_with_all = ["json", "only"])]
+    /// Write a curve as CSV instead (to -o); `--method windowed` takes the radial power spectrum from
+    /// the RDF as `nu_eff` does
+    #[arg(long, value_enum, requires = "output", conflicts_with_all = ["json", "only", "power_below"])]
     curve: Option<CurveName>,
     /// File for the curve, `-` for standard output
     #[arg(short, long, value_name = "FILE", requires = "curve")]
@@ -91,7 +92,8 @@ pub(super) fn run(args: &Analyze, global: &Global) -> Outcome {
     args.check()?;
     let groups = args.groups()?;
     if let Some(curve) = args.curve {
-        return write_curve(curve, &groups, args.output.as_deref().unwrap_or(Path::new("-")));
+        let path = args.output.as_deref().unwrap_or(Path::new("-"));
+        return write_curve(curve, args.method, &groups, path);
     }
     let mut summaries = Vec::new();
     for group in groups {
@@ -126,6 +128,16 @@ impl Analyze {
             return Err(Failure::misuse(
                 "--only power_below needs a frequency: add --power-below NU",
             ));
+        }
+        if self.method == Some(Estimator::Direct) && only.iter().any(|s| s.is_windowed()) {
+            return Err(Failure::misuse(
+                "--method direct gives nu_eff_direct and omega_direct; ask for these with --only",
+            ));
+        }
+        if let (Some(curve), Some(_)) = (self.curve, self.method)
+            && !matches!(curve, CurveName::RadialPower)
+        {
+            return Err(Failure::misuse("--method belongs to the curve radial-power alone"));
         }
         if self.files.iter().filter(|file| file.as_os_str() == "-").count() > 1 {
             return Err(Failure::misuse("standard input (-) can be read only once"));
@@ -213,7 +225,12 @@ impl Group {
     }
 }
 
-fn write_curve(name: CurveName, groups: &[Group], path: &Path) -> Outcome {
+fn write_curve(
+    name: CurveName,
+    method: Option<Estimator>,
+    groups: &[Group],
+    path: &Path,
+) -> Outcome {
     let [group] = groups else {
         return Err(Failure::misuse("--curve takes one file, or several with --average"));
     };
@@ -221,7 +238,11 @@ fn write_curve(name: CurveName, groups: &[Group], path: &Path) -> Outcome {
     let spectrum = || analysis.radial_power(analysis.shown_frequency());
     let (header, curve): (&str, Option<Curve>) = match name {
         CurveName::Rdf => ("r,g", Some(analysis.rdf())),
-        CurveName::RadialPower => ("nu,power", spectrum().curve()),
+        CurveName::RadialPower => {
+            let windowed = method == Some(Estimator::Windowed);
+            let power = || analysis.windowed().power().clone();
+            ("nu,power", if windowed { Some(power()) } else { spectrum().curve() })
+        }
         CurveName::Anisotropy => ("nu,anisotropy_db", spectrum().anisotropy_db()),
     };
     output::write_to(path, |w| {

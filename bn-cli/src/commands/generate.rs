@@ -1,12 +1,15 @@
 //! `bn generate`: patterns from the registry of methods.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use bn_core::io::Format;
 use bn_core::{Observer, PointSet, Seed, Unobserved};
-use bn_samplers::{DefaultValue, METHODS, Method, OptionKind, OptionSpec, Report, Sample, Sampler};
+use bn_samplers::{
+    DefaultValue, Given, METHODS, Method, OptionKind, OptionSpec, Report, Sample, Sampler,
+};
 use clap::builder::ValueRange;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command};
 use rayon::prelude::*;
@@ -14,7 +17,7 @@ use serde_json::{Map, Value, json};
 
 use super::Global;
 use crate::progress_bar::Bar;
-use crate::{Failure, Outcome, output, output_points};
+use crate::{Failure, Outcome, density, input, output, output_points};
 
 /// What every method takes.
 #[derive(Debug, Args)]
@@ -100,6 +103,8 @@ fn value_name(kind: OptionKind) -> &'static str {
         OptionKind::Real { .. } => "X",
         OptionKind::Choice(_) => "WORD",
         OptionKind::Flag | OptionKind::Text => "TEXT",
+        OptionKind::Points => "FILE",
+        OptionKind::Density => "IMAGE|FORMULA",
     }
 }
 
@@ -110,7 +115,8 @@ pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
     let method = bn_samplers::find(name).map_err(Failure::usage)?;
     let args: Generate = super::parsed(matches)?;
     let options = given_options(method, matches);
-    let sampler = method.with_options(options.iter().copied()).map_err(Failure::usage)?;
+    let given = given_values(method, &options)?;
+    let sampler = method.with_values(given).map_err(Failure::usage)?;
     if u64::from(args.n) * u64::from(args.sets) > MAX_TOTAL {
         return Err(Failure::misuse(format!(
             "{} sets of {} points are more than {MAX_TOTAL} points in all; make them in several runs",
@@ -150,6 +156,34 @@ fn given_options<'a>(
 ) -> Vec<(&'static str, &'a str)> {
     let typed = |spec: &OptionSpec| matches.get_one::<String>(spec.name).map(String::as_str);
     method.options.iter().filter_map(|spec| Some((spec.name, typed(spec)?))).collect()
+}
+
+/// The options as the method takes them: files of points and densities are read here.
+fn given_values<'a>(
+    method: &Method,
+    options: &[(&'static str, &'a str)],
+) -> Outcome<Vec<(&'static str, Given<'a>)>> {
+    let kind = |name| method.options.iter().find(|spec| spec.name == name).map(|spec| spec.kind);
+    let value = |name, text| -> Outcome<Given<'a>> {
+        Ok(match kind(name) {
+            Some(OptionKind::Points) => Given::Points(Arc::new(only_set(text)?)),
+            Some(OptionKind::Density) => Given::Density(Arc::new(density::density(text)?)),
+            _ => Given::Text(text),
+        })
+    };
+    options.iter().map(|&(name, text)| Ok((name, value(name, text)?))).collect()
+}
+
+/// The one set of a file.
+fn only_set(file: &str) -> Outcome<PointSet> {
+    let mut sets = input::read(Path::new(file), None, false)?.into_sets();
+    match (sets.pop(), sets.len()) {
+        (Some(set), 0) => Ok(set),
+        (_, others) => Err(Failure::misuse(format!(
+            "{file} holds {} sets where one is wanted; `bn convert` it to one file a set",
+            others + 1
+        ))),
+    }
 }
 
 /// The sets, made in parallel; one alone shows how it proceeds, several show how many are done.
@@ -230,7 +264,7 @@ fn option_value(spec: &OptionSpec, given: &[(&str, &str)]) -> Value {
         OptionKind::Flag | OptionKind::Integer { .. } | OptionKind::Real { .. } => {
             text.parse().unwrap_or_else(|_| json!(text.parse::<f64>().ok()))
         }
-        OptionKind::Choice(_) | OptionKind::Text => json!(text),
+        _ => json!(text),
     }
 }
 

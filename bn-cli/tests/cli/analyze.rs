@@ -149,3 +149,36 @@ fn degenerate_sets_have_statistics() {
         folder.bn(&format!("analyze {name}")).done();
     }
 }
+
+/// The windowed spectrum is the one whose crossing `nu_eff` is; the estimators differ.
+#[test]
+fn the_method_chooses_the_radial_power() {
+    let folder = Folder::new();
+    folder.bn("generate jittered -n 1024 -o j.txt").done();
+    let rows = |name: &str| {
+        let csv = String::from_utf8(folder.read(name)).expect("text");
+        let mut lines = csv.lines();
+        assert_eq!(lines.next(), Some("nu,power"));
+        lines.map(|line| line.split_once(',').expect("a pair").0.parse().unwrap()).collect()
+    };
+    folder.bn("analyze j.txt --curve radial-power --method windowed -o w.csv").done();
+    folder.bn("analyze j.txt --curve radial-power -o d.csv").done();
+    let (windowed, direct): (Vec<f64>, Vec<f64>) = (rows("w.csv"), rows("d.csv"));
+    // Steps of √n/200 against rings of width 1.
+    assert!((windowed[1] - windowed[0] - 0.16).abs() < 1e-12);
+    assert!(direct[1] - direct[0] > 0.5);
+}
+
+#[test]
+fn options_that_contradict_each_other_are_refused() {
+    let folder = Folder::new();
+    grid(&folder);
+    for arguments in [
+        "--curve rdf --method direct -o c.csv",
+        "--curve anisotropy --method windowed -o c.csv",
+        "--curve rdf --power-below 3 -o c.csv",
+        "--only nu_eff --method direct",
+    ] {
+        folder.bn(&format!("analyze grid.txt {arguments}")).refused(2, &["--"]);
+    }
+}

@@ -1,0 +1,120 @@
+//! Density functions from images and formulas.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use bn_core::DensityFunction;
+use bn_render::{Channels, Image};
+use exmex::Express;
+
+use crate::{Failure, Outcome};
+
+/// Pixels on a side of the raster that a formula is evaluated on.
+const FORMULA_SIDE: usize = 1024;
+
+/// The longest formula.
+const MAX_FORMULA: usize = 1000;
+
+/// The density that `text` says: the name of a `.png` or `.pfm` image, or a formula of x and y.
+///
+/// An image lies on the unit square with its top row at y = 1; points are as dense as it is dark,
+/// in proportion to 1 minus its linear luminance. A formula such as `0.1 + x^2` is evaluated at the
+/// centres of 1024 × 1024 pixels.
+///
+/// # Errors
+/// Files and formulas that are bad, negative or all 0 are bad use.
+pub fn density(text: &str) -> Outcome<DensityFunction> {
+    let path = Path::new(text);
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    match extension.as_deref() {
+        Some("png") => from_image(path, |file| bn_render::read_png(file, None)),
+        Some("pfm") => from_image(path, bn_render::read_pfm),
+        _ => from_formula(text),
+    }
+    .with_context(|| format!("--density {text}"))
+    .map_err(Failure::usage)
+}
+
+fn from_image(
+    path: &Path,
+    read: impl Fn(BufReader<File>) -> Result<Image, bn_render::ImageError>,
+) -> anyhow::Result<DensityFunction> {
+    let image = read(BufReader::new(File::open(path)?))?;
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let mut values = Vec::with_capacity(width * height);
+    for row in (0..image.height()).rev() {
+        for column in 0..image.width() {
+            let pixel = image.pixel(column, row);
+            let luminance = match image.channels() {
+                Channels::Grey => f64::from(pixel[0]),
+                // Rec. 709, whose primaries are those of sRGB.
+                Channels::Rgb => {
+                    0.2126 * f64::from(pixel[0])
+                        + 0.7152 * f64::from(pixel[1])
+                        + 0.0722 * f64::from(pixel[2])
+                }
+            };
+            values.push((1.0 - luminance).clamp(0.0, 1.0));
+        }
+    }
+    DensityFunction::from_raster(width, height, values)
+        .context("the image is white all over: points go where it is dark")
+}
+
+fn from_formula(text: &str) -> anyhow::Result<DensityFunction> {
+    let mend = "give an image (.png, .pfm) or a formula of x and y such as 0.1+x^2";
+    if text.len() > MAX_FORMULA {
+        return Err(anyhow!("longer than {MAX_FORMULA} characters; {mend}"));
+    }
+    let formula = exmex::parse::<f64>(text).map_err(|error| anyhow!("{error}; {mend}"))?;
+    let names = formula.var_names();
+    if let Some(name) = names.iter().find(|name| *name != "x" && *name != "y") {
+        return Err(anyhow!("no variable is called {name}; {mend}"));
+    }
+    let mut variables = vec![0.0; names.len()];
+    let density = DensityFunction::from_fn(FORMULA_SIDE, |p| {
+        for (variable, name) in variables.iter_mut().zip(names) {
+            *variable = if name == "x" { p.x } else { p.y };
+        }
+        formula.eval(&variables).unwrap_or(f64::NAN)
+    });
+    Ok(density?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bn_core::DVec2;
+
+    #[test]
+    fn formulas_know_x_and_y() {
+        let ramp = density("3*x").expect("valid");
+        assert!((ramp.at(DVec2::new(0.75, 0.1)) - 1.5).abs() < 2e-3);
+        let both = density("1 + cos(2*PI*y)*x").expect("valid");
+        assert!(both.at(DVec2::new(0.99, 0.01)) > both.at(DVec2::new(0.99, 0.5)));
+        assert_eq!(density("2").expect("constant").max(), 1.0);
+    }
+
+    #[test]
+    fn bad_densities_are_refused() {
+        for text in ["", "x +", "z", "x - 2", "1/0*x", "0", "nosuch.png", "nosuch.pfm", "sin("] {
+            assert!(density(text).is_err(), "{text:?}");
+        }
+        assert!(density(&"x+".repeat(MAX_FORMULA)).is_err());
+        assert!(density(&"(".repeat(900)).is_err());
+    }
+
+    #[test]
+    fn dark_pixels_of_an_image_are_dense() {
+        // Two rows: black above white.
+        let image = Image::new(1, 2, Channels::Grey, vec![0.0, 1.0]).expect("valid");
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("step.pfm");
+        bn_render::write_pfm(&image, File::create(&path).expect("a file")).expect("written");
+        let density = density(path.to_str().expect("text")).expect("valid");
+        assert_eq!(density.at(DVec2::new(0.5, 0.75)), 2.0);
+        assert_eq!(density.at(DVec2::new(0.5, 0.25)), 0.0);
+    }
+}
