@@ -45,7 +45,7 @@ pub use circle::Circle;
 pub use coverage::Coverage;
 pub use empty_circles::EmptyCircles;
 pub use order::{bond_orientational_order, local_bond_orientational_order};
-pub use power::{PowerDiagram, PowerEdge, PowerNeighbor};
+pub use power::{Balance, BalancedDiagram, PowerDiagram, PowerEdge, PowerNeighbor};
 pub use spacing::Spacing;
 pub use triangulation::{Face, FaceId, Faces, Location, Neighbors, Star, Triangulation};
 pub use voronoi::{VoronoiCell, voronoi_cells, voronoi_cells_into};

@@ -1,5 +1,7 @@
 //! Power diagrams: Voronoi diagrams of points with weights.
 
+mod balance;
+mod laplacian;
 mod polygon;
 mod search;
 
@@ -9,6 +11,8 @@ use rayon::prelude::*;
 use self::polygon::Polygon;
 use self::search::Sites;
 use crate::VoronoiCell;
+
+pub use self::balance::{Balance, BalancedDiagram};
 
 /// The power diagram of weighted points on the unit torus.
 ///
