@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use glam::DVec2;
+
 /// Where a long computation stands.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
@@ -36,6 +38,13 @@ impl<'a> Progress<'a> {
 pub trait Observer: Sync {
     /// Takes note of the progress and says whether to go on.
     fn observe(&self, progress: &Progress<'_>) -> ControlFlow<()>;
+
+    /// Follows a method that moves points: called after each iteration, and with 0 before the
+    /// first. `points` makes a copy of them, in the order in which they will be returned; who
+    /// doesn't call it pays nothing, as by default.
+    fn iterated(&self, iteration: u64, points: &dyn Fn() -> Vec<DVec2>) {
+        let _ = (iteration, points);
+    }
 }
 
 /// Watches nothing and never stops anything.
