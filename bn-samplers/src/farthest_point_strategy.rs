@@ -51,7 +51,7 @@ pub(crate) const METHOD: Method = Method {
         let start = options.integer("start").map_or(defaults.start, |start| start as usize);
         Ok(Box::new(FarthestPointStrategy { start }))
     },
-    version: 1,
+    version: 2,
 };
 
 /// The most random points at the beginning.

@@ -55,7 +55,7 @@ pub use net::{Construction, Net};
 pub(crate) use options::DENSITY_OPTION;
 pub use options::{DefaultValue, Given, OptionError, OptionKind, OptionSpec, OptionValues};
 pub use poisson_disk::dart_throwing::DartThrowing;
-pub use poisson_disk::maximal::MaximalPoissonDisk;
+pub use poisson_disk::maximal::{MaximalPoissonDisk, MaximalTarget};
 pub use r2::R2;
 pub use registry::{METHODS, UnknownMethod, find};
 pub use regular::Regular;

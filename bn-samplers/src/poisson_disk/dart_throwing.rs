@@ -50,7 +50,7 @@ pub(crate) const METHOD: Method = Method {
         let radius = options.real("radius").map(NormalizedDistance::new);
         Ok(Box::new(DartThrowing { radius }))
     },
-    version: 1,
+    version: 2,
 };
 
 /// The largest radius in `d_hex`; beyond 1 not even the hexagonal lattice has n points.
