@@ -48,27 +48,60 @@ impl BucketGrid {
     /// Whether a point lies nearer to `p` than `radius`.
     pub(crate) fn any_within(&self, p: DVec2, radius: f64) -> bool {
         let limit = radius * radius;
-        let reach = self.reach(radius);
-        self.columns(p.y, reach).any(|row| {
-            self.columns(p.x, reach)
-                .any(|column| self.least_squared_in(row * self.side + column, p) < limit)
-        })
+        self.any_near(p, radius, |q| torus::distance_squared(p, q) < limit)
     }
 
-    /// The cells to either side that a search of this radius has to look at.
-    fn reach(&self, radius: f64) -> usize {
-        (radius * self.side as f64).ceil() as usize
+    /// Whether the disk of this radius around one of the points covers the whole square.
+    pub(crate) fn any_covers(&self, centre: DVec2, half_side: f64, radius: f64) -> bool {
+        self.any_near(centre, radius, |q| disk_covers(q, radius, centre, half_side))
     }
 
-    /// The squared distance to the nearest point of a cell, infinite if it is empty.
-    fn least_squared_in(&self, cell: usize, p: DVec2) -> f64 {
-        let mut least = f64::INFINITY;
-        let mut at = self.heads[cell];
-        while at != END {
-            least = least.min(torus::distance_squared(p, self.points[at as usize]));
-            at = self.previous[at as usize];
+    /// The point nearest to `p` and its squared distance; none in an empty grid.
+    pub(crate) fn nearest(&self, p: DVec2) -> Option<(DVec2, f64)> {
+        let mut best: Option<(DVec2, f64)> = None;
+        // Cells whose nearest corner is farther than what was found need not be looked at.
+        for reach in 0..=self.side / 2 {
+            let cleared = reach.saturating_sub(1) as f64 / self.side as f64;
+            if best.is_some_and(|(_, squared)| squared <= cleared * cleared) {
+                break;
+            }
+            self.for_ring(p, reach, |q| {
+                let squared = torus::distance_squared(p, q);
+                if best.is_none_or(|(_, least)| squared < least) {
+                    best = Some((q, squared));
+                }
+            });
         }
-        least
+        best
+    }
+
+    /// Whether `test` holds for any of the points in the cells that the radius reaches from `p`.
+    fn any_near(&self, p: DVec2, radius: f64, test: impl Fn(DVec2) -> bool) -> bool {
+        let reach = (radius * self.side as f64).ceil() as usize;
+        self.columns(p.y, reach)
+            .any(|row| self.columns(p.x, reach).any(|column| self.cell(column, row).any(&test)))
+    }
+
+    /// Visits the points in the cells at most, and in one axis exactly, `reach` cells away; in all
+    /// cells once the ring closes around the torus.
+    fn for_ring(&self, p: DVec2, reach: usize, mut visit: impl FnMut(DVec2)) {
+        let everything = 2 * reach + 1 >= self.side;
+        let is_end = |i: usize| everything || i == 0 || i == 2 * reach;
+        for (i, row) in self.columns(p.y, reach).enumerate() {
+            for (j, column) in self.columns(p.x, reach).enumerate() {
+                if is_end(i) || is_end(j) {
+                    self.cell(column, row).for_each(&mut visit);
+                }
+            }
+        }
+    }
+
+    /// The points of a cell.
+    fn cell(&self, column: usize, row: usize) -> impl Iterator<Item = DVec2> {
+        let exists = |index: u32| (index != END).then_some(index);
+        let first = exists(self.heads[row * self.side + column]);
+        std::iter::successors(first, move |&index| exists(self.previous[index as usize]))
+            .map(|index| self.points[index as usize])
     }
 
     fn index(&self, coordinate: f64) -> usize {
@@ -83,6 +116,12 @@ impl BucketGrid {
         let first = if count == side { 0 } else { (self.index(coordinate) + side - reach) % side };
         (first..first + count).map(move |column| if column < side { column } else { column - side })
     }
+}
+
+/// Whether the disk around `p` covers the whole square, which lies nearer than ½ to it.
+pub(crate) fn disk_covers(p: DVec2, radius: f64, centre: DVec2, half_side: f64) -> bool {
+    let farthest = torus::delta(centre, p).abs() + DVec2::splat(half_side);
+    farthest.length_squared() < radius * radius
 }
 
 #[cfg(test)]
@@ -102,7 +141,9 @@ mod tests {
             assert_eq!(grid.points(), points);
             for q in uniform_points(200, Seed::new(10), 0).expect("few points") {
                 let nearest = points.iter().map(|&p| torus::distance_squared(p, q));
-                let nearest = nearest.fold(f64::INFINITY, f64::min).sqrt();
+                let nearest = nearest.fold(f64::INFINITY, f64::min);
+                assert_eq!(grid.nearest(q).expect("points").1, nearest);
+                let nearest = nearest.sqrt();
                 for radius in [0.9 * nearest, 1.1 * nearest, 0.01, 0.3, 0.8] {
                     assert_eq!(grid.any_within(q, radius), nearest < radius);
                 }

@@ -22,6 +22,7 @@
 //! Invariant: never prints, reads no file, keeps no state between two samples; the same options,
 //! count and seed give the same bytes on any machine and number of threads.
 
+mod best_candidate;
 mod bucket_grid;
 mod digits;
 mod error;
@@ -35,6 +36,7 @@ mod method;
 mod names;
 mod net;
 mod options;
+mod particles;
 mod poisson_disk;
 mod r2;
 mod registry;
@@ -44,6 +46,7 @@ mod sampler;
 mod sobol;
 mod stochastic;
 
+pub use best_candidate::BestCandidate;
 pub use error::SampleError;
 pub use farthest_point_strategy::FarthestPointStrategy;
 pub use halton::Halton;
@@ -54,6 +57,8 @@ pub use method::{CountRule, Method, PointOrder};
 pub use net::{Construction, Net};
 pub(crate) use options::DENSITY_OPTION;
 pub use options::{DefaultValue, Given, OptionError, OptionKind, OptionSpec, OptionValues};
+pub use particles::electrostatic::Electrostatic;
+pub use particles::kernel_density::KernelDensity;
 pub use poisson_disk::dart_throwing::DartThrowing;
 pub use poisson_disk::maximal::{MaximalPoissonDisk, MaximalTarget};
 pub use r2::R2;

@@ -3,10 +3,11 @@
 use thiserror::Error;
 
 use crate::names::nearest_name;
+use crate::particles::{electrostatic, kernel_density};
 use crate::poisson_disk::{dart_throwing, maximal};
 use crate::{
-    Method, farthest_point_strategy, halton, hexagonal, jittered, lloyd, net, r2, regular, sobol,
-    stochastic,
+    Method, best_candidate, farthest_point_strategy, halton, hexagonal, jittered, lloyd, net, r2,
+    regular, sobol, stochastic,
 };
 
 /// Every method, in the order of the thesis's appendix B, then those that it doesn't show.
@@ -18,7 +19,10 @@ pub const METHODS: &[&Method] = &[
     &jittered::METHOD,
     &dart_throwing::METHOD,
     &maximal::METHOD,
+    &best_candidate::METHOD,
     &farthest_point_strategy::METHOD,
+    &kernel_density::METHOD,
+    &electrostatic::METHOD,
     &lloyd::METHOD,
     &net::METHOD,
     &regular::METHOD,

@@ -17,8 +17,9 @@ fn sample(method: &Method, n: usize, seed: u64) -> Result<Sample, SampleError> {
 
 /// Options that keep the work small where nothing but its kind matters.
 fn brief(method: &Method) -> Vec<(&'static str, &'static str)> {
-    let iterates = method.options.iter().any(|spec| spec.name == "iterations");
-    if iterates { vec![("iterations", "20")] } else { Vec::new() }
+    let brief = [("iterations", "20"), ("steps", "5"), ("candidates", "1")];
+    let takes = |name: &str| method.options.iter().any(|spec| spec.name == name);
+    brief.into_iter().filter(|(name, _)| takes(name)).collect()
 }
 
 /// The possible count nearest to `n`.
@@ -251,6 +252,9 @@ const GOLDEN: &[Golden] = &[
     ("dart-throwing", 2, &[("radius", "0.2")], 0xc45d_a87f_dbb9_7eec),
     ("maximal-poisson-disk", 2, &[], 0x352a_ef5a_d857_23d0),
     ("maximal-poisson-disk", 2, &[("exact", "true")], 0x850b_41c7_7bd8_da32),
+    ("best-candidate", 1, &[], 0x14b3_a6c2_53ee_d9f6),
+    ("kernel-density", 1, &[], 0xc6e8_c0c6_18ac_df63),
+    ("electrostatic", 1, &[("iterations", "20")], 0x55d4_be42_b660_4815),
     ("farthest-point-strategy", 2, &[], 0xf4dd_bca8_7323_7965),
     ("lloyd", 1, &[("iterations", "50")], 0xdddf_a785_8951_6880),
     ("net", 1, &[], 0xcc75_e36f_cd1d_4505),

@@ -48,7 +48,7 @@ impl Contest<'_> {
             let dart = self.dart(name);
             if dart.fate() == Fate::Open {
                 if self.grid.covers_place(dart.place, dart.cell) {
-                    dart.settle(Fate::Falls);
+                    dart.fall();
                 } else if let Some(earlier) = self.unsettled_rival(name) {
                     waiting.push(earlier);
                     continue;
@@ -65,10 +65,10 @@ impl Contest<'_> {
     /// A disk that covers it can't be that of a later dart: that one would have waited for it.
     fn settle_among_settled(&self, dart: &Dart) {
         if self.grid.covers_place(dart.place, dart.cell) {
-            dart.settle(Fate::Falls);
+            dart.fall();
         } else {
             self.grid.insert(dart.place, dart.cell);
-            dart.settle(Fate::Sticks);
+            dart.stick();
         }
     }
 

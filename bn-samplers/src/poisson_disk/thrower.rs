@@ -178,6 +178,24 @@ mod tests {
         }
     }
 
+    /// Threads that find the same dart's fate at the same time agree.
+    #[test]
+    fn threads_agree() {
+        let (n, radius) = (20_000, 0.8 * Density::new(20_000).hexagonal_spacing());
+        let points = |threads: usize, seed| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let throw = || {
+                let mut thrower = Thrower::new(radius, n, Seed::new(seed)).expect("room");
+                thrower.throw(None, &bn_core::Unobserved).expect("not stopped");
+                thrower.into_points()
+            };
+            pool.expect("threads").install(throw)
+        };
+        for seed in 0..12 {
+            assert!(points(8, seed) == points(1, seed), "seed {seed}");
+        }
+    }
+
     /// Counts of darts have the mean and the variance of a Poisson process.
     #[test]
     fn volleys_are_poisson_processes() {

@@ -163,16 +163,26 @@ impl Tile {
 impl Dart {
     /// What is known of its fate.
     pub(super) fn fate(&self) -> Fate {
-        match self.fate.load(Ordering::Relaxed) {
+        match self.fate.load(Ordering::Acquire) {
             0 => Fate::Open,
             1 => Fate::Sticks,
             _ => Fate::Falls,
         }
     }
 
-    /// Notes its fate. Several threads may find it: they find the same.
-    pub(super) fn settle(&self, fate: Fate) {
-        self.fate.store(fate as u8, Ordering::Relaxed);
+    /// Notes that it sticks; it has to be in the grid already.
+    pub(super) fn stick(&self) {
+        self.fate.store(Fate::Sticks as u8, Ordering::Release);
+    }
+
+    /// Notes that a disk covers it.
+    ///
+    /// That may be its own: while this thread asked the grid, another one may have found that the
+    /// dart sticks. Hence that finding stands, whichever comes first.
+    pub(super) fn fall(&self) {
+        let (open, falls) = (Fate::Open as u8, Fate::Falls as u8);
+        // Failing means that it sticks, or fell before.
+        let _ = self.fate.compare_exchange(open, falls, Ordering::AcqRel, Ordering::Acquire);
     }
 }
 

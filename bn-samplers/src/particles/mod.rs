@@ -1,0 +1,6 @@
+//! Points as particles that repel each other.
+
+pub(crate) mod electrostatic;
+mod ewald;
+pub(crate) mod kernel_density;
+mod pair_forces;
