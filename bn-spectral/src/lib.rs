@@ -7,7 +7,8 @@
 //! views. Beneath them lie the non-uniform Fourier transform ([`Nufft`]), the Hankel transform of
 //! order 0, on quadrature nodes ([`HankelPlan`]) and between lattices ([`BesselSums`]), and Bessel
 //! functions over slices ([`j0_slice`]). Closed forms for tests and predictions:
-//! [`JitteredGrid`], [`square_lattice_rings`], [`hexagonal_lattice_rings`], [`step_rdf`].
+//! [`JitteredGrid`], [`square_lattice_rings`], [`hexagonal_lattice_rings`], [`step_rdf`]. Spectra to
+//! aim at are [`Target`]s, and [`Realizability`] says whether point sets can have them.
 //!
 //! Frequencies are in cycles per unit unless a type says otherwise, P → 1 at high frequencies and
 //! g → 1 at large distances.
@@ -37,7 +38,9 @@ mod periodogram;
 mod power_image;
 mod radial;
 mod rdf;
+mod realizability;
 mod spectra;
+mod target;
 mod window;
 
 pub use autocorrelation::Autocorrelation;
@@ -55,9 +58,11 @@ pub use periodogram::{Periodogram, PeriodogramOptions};
 pub use power_image::PowerImage;
 pub use radial::{RadialPower, power_below};
 pub use rdf::PairHistogram;
+pub use realizability::{Realizability, Warning, feasible_region};
 pub use rustfft::num_complex::Complex;
 pub use spectra::{
     JitteredGrid, LatticeRing, hexagonal_lattice_rings, highest_step, square_lattice_rings,
     step_rdf,
 };
+pub use target::{SinglePeak, Target, TargetError};
 pub use window::Window;

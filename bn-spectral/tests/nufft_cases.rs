@@ -290,3 +290,34 @@ fn absurd_plans_are_refused() {
     let refused = NufftOptions::new(usize::MAX / 4, 1e-6).plan::<f64>();
     assert!(matches!(refused, Err(NufftError::Frequency { .. })));
 }
+
+/// Gradients against the modes' own derivatives, for many points and few.
+#[test]
+fn gradients_are_those_of_the_sums() {
+    let max_frequency = 20;
+    for n in [3, 400] {
+        let points = random_points(n, 77);
+        let modes = direct_modes(&random_points(50, 78), None, max_frequency);
+        let options = NufftOptions::new(max_frequency, 1e-9).expecting(n).portable();
+        let mut plan: Nufft = options.plan().expect("valid");
+        let mut got = vec![DVec2::ZERO; n];
+        plan.columns_to_gradients(&points, &mut got, |kx, out| {
+            out.copy_from_slice(modes.column(kx));
+        });
+        for axis in 0..2 {
+            let mut turned = modes.clone();
+            for (kx, column) in turned.columns_mut().enumerate() {
+                for (j, mode) in column.iter_mut().enumerate() {
+                    let k = if axis == 0 { kx as f64 } else { j as f64 - max_frequency as f64 };
+                    *mode *= Complex::new(0.0, std::f64::consts::TAU * k);
+                }
+            }
+            let want = direct_sums(&points, &turned);
+            let scale = want.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let error =
+                got.iter().zip(&want).map(|(g, w)| (g[axis] - w).powi(2)).sum::<f64>().sqrt();
+            // The kernel's derivative loses a factor of its width's order, here about 10.
+            assert!(error < 3e-8 * scale, "{n} points, axis {axis}: {error} of {scale}");
+        }
+    }
+}

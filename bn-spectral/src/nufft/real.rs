@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use rustfft::num_traits::NumAssign;
-use rustfft::{Fft, FftNum, FftPlanner, FftPlannerScalar};
+use rustfft::{Fft, FftNum, FftPlanner};
 
+use super::batch::BatchTransform;
 use super::simd::Simd;
-use super::taps::{Gather, Spread};
+use super::taps::{Gather, GatherGradient, Spread};
 use super::transpose::{FromColumns, Scale, ToColumns};
 
 /// `f64`, or `f32` where speed and memory count more than digits.
@@ -25,18 +26,23 @@ pub trait Real: FftNum + NumAssign + Default + PartialOrd + sealed::Sealed {
 }
 
 pub(super) mod sealed {
-    use super::{Arc, Fft, FromColumns, Gather, Scale, Simd, Spread, ToColumns};
+    use super::{
+        Arc, BatchTransform, Fft, FromColumns, Gather, GatherGradient, Scale, Simd, Spread,
+        ToColumns,
+    };
 
     /// What is compiled once for each type, here: a generic function would be compiled anew by
     /// every crate that uses a transform, and the FFTs take a minute.
     pub trait Sealed: Sized {
         fn spread(job: Spread<'_, '_, Self>);
         fn gather(job: Gather<'_, '_, Self>);
+        fn gather_gradient(job: GatherGradient<'_, '_, Self>);
         fn to_columns(simd: Simd, job: ToColumns<'_, '_, Self>);
         fn from_columns(simd: Simd, job: FromColumns<'_, '_, Self>);
         fn scale(simd: Simd, job: Scale<'_, Self>);
-        /// Transforms of this size with e^(−2πi…) and e^(+2πi…).
-        fn plan_ffts(size: usize, portable: bool) -> [Arc<dyn Fft<Self>>; 2];
+        fn transform_batch(simd: Simd, job: BatchTransform<'_, Self>);
+        /// Transforms of this size with e^(−2πi…) and e^(+2πi…), the fastest that this CPU has.
+        fn plan_ffts(size: usize) -> [Arc<dyn Fft<Self>>; 2];
     }
 }
 
@@ -51,6 +57,10 @@ macro_rules! implement {
                 job.taps.simd.run(job);
             }
 
+            fn gather_gradient(job: GatherGradient<'_, '_, Self>) {
+                job.0.taps.simd.run(job);
+            }
+
             fn to_columns(simd: Simd, job: ToColumns<'_, '_, Self>) {
                 simd.run(job);
             }
@@ -63,14 +73,13 @@ macro_rules! implement {
                 simd.run(job);
             }
 
-            fn plan_ffts(size: usize, portable: bool) -> [Arc<dyn Fft<Self>>; 2] {
-                if portable {
-                    let mut planner = FftPlannerScalar::new();
-                    [planner.plan_fft_forward(size), planner.plan_fft_inverse(size)]
-                } else {
-                    let mut planner = FftPlanner::new();
-                    [planner.plan_fft_forward(size), planner.plan_fft_inverse(size)]
-                }
+            fn transform_batch(simd: Simd, job: BatchTransform<'_, Self>) {
+                simd.run(job);
+            }
+
+            fn plan_ffts(size: usize) -> [Arc<dyn Fft<Self>>; 2] {
+                let mut planner = FftPlanner::new();
+                [planner.plan_fft_forward(size), planner.plan_fft_inverse(size)]
             }
         }
 

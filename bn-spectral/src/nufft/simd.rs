@@ -1,4 +1,4 @@
-//! Loops compiled twice: for any CPU, and for AVX2 with fused multiply-add, taken where the CPU
+//! Loops compiled for any CPU, for AVX2, and for AVX2 with fused multiply-add, taken where the CPU
 //! has them.
 
 use super::real::Real;
@@ -21,33 +21,61 @@ pub(super) fn multiply_add<T: Real, const FUSED: bool>(a: T, b: T, c: T) -> T {
 /// The instructions that jobs are run with.
 #[derive(Clone, Copy, Debug)]
 pub struct Simd {
-    fused: bool,
+    level: Level,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Level {
+    Any,
+    /// AVX2, products and sums rounded one by one: the same bits as [`Level::Any`].
+    Wide,
+    /// AVX2 and fused multiply-add.
+    Fused,
 }
 
 impl Simd {
     /// The best that this CPU has.
     pub(super) fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
-        let fused = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
-        #[cfg(not(target_arch = "x86_64"))]
-        let fused = false;
-        Self { fused }
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            return Self { level: Level::Fused };
+        }
+        Self { level: Level::Any }
     }
 
-    /// What every CPU has, with the same result on all of them.
+    /// The best whose results are the same bits on every CPU.
     pub(super) fn portable() -> Self {
-        Self { fused: false }
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") {
+            return Self { level: Level::Wide };
+        }
+        Self { level: Level::Any }
+    }
+
+    /// What any CPU has; in tests, to compare the others with.
+    #[cfg(test)]
+    pub(super) fn any() -> Self {
+        Self { level: Level::Any }
     }
 
     #[inline]
     pub(super) fn run<J: Job>(self, job: J) -> J::Output {
         #[cfg(target_arch = "x86_64")]
-        if self.fused {
-            // SAFETY: `fused` is set only where the CPU has AVX2 and FMA.
-            return unsafe { run_with_avx2_and_fma(job) };
+        match self.level {
+            // SAFETY: this level is set only where the CPU has AVX2 and FMA.
+            Level::Fused => return unsafe { run_with_avx2_and_fma(job) },
+            // SAFETY: this level is set only where the CPU has AVX2.
+            Level::Wide => return unsafe { run_with_avx2(job) },
+            Level::Any => {}
         }
         job.run::<false>()
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn run_with_avx2<J: Job>(job: J) -> J::Output {
+    job.run::<false>()
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rustfft::num_complex::Complex;
 
+use super::ffts::{Direction, FftScratch, Ffts};
 use super::kernel::MAX_WIDTH;
 use super::real::Real;
 
@@ -179,6 +180,16 @@ impl<'a, T: Real> Strip<'a, T> {
     pub(super) fn rows_mut(&mut self) -> impl Iterator<Item = &mut [Complex<T>]> {
         let grid = self.stride - MAX_WIDTH;
         self.cells.chunks_exact_mut(self.stride).map(move |row| &mut row[..grid])
+    }
+
+    /// Transforms every row.
+    pub(super) fn transform(
+        &mut self,
+        ffts: &Ffts<T>,
+        direction: Direction,
+        scratch: &mut FftScratch<T>,
+    ) {
+        ffts.transform(direction, self.cells, self.stride - MAX_WIDTH, self.stride, scratch);
     }
 
     /// Number `column` of every row, from the strip's first row to its last.

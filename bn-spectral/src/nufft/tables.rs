@@ -1,13 +1,14 @@
 //! What a plan computes once, the scratch space of its threads, and how work is dealt to them.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
-use rustfft::Fft;
 use rustfft::num_complex::Complex;
 
+use super::batch::LANES;
 use super::design::Design;
+use super::ffts::{FftScratch, Ffts};
 use super::real::Real;
 use super::simd::Simd;
 use super::strip::{Packing, Strips};
@@ -21,9 +22,8 @@ pub(super) struct Tables<T> {
     pub(super) simd: Simd,
     /// 1/φ̂(k/N) for k = −K … K.
     pub(super) deconvolution: Vec<T>,
-    /// e^(−2πi…) and e^(+2πi…) over the grid's side.
-    pub(super) forward: Arc<dyn Fft<T>>,
-    pub(super) inverse: Arc<dyn Fft<T>>,
+    /// Over the grid's side.
+    pub(super) ffts: Ffts<T>,
     paired: Strips,
     single: Strips,
 }
@@ -39,15 +39,13 @@ impl<T: Real> Tables<T> {
         let deconvolution = (-limit..=limit)
             .map(|k| T::narrow(1.0 / transform(k.unsigned_abs() as usize)))
             .collect();
-        let [forward, inverse] = T::plan_ffts(grid, portable);
         let simd = if portable { Simd::portable() } else { Simd::detect() };
         Self {
             max_frequency,
             taps: Taps::new(kernel.width, design.taps, polynomials, simd),
             simd,
             deconvolution,
-            forward,
-            inverse,
+            ffts: Ffts::new(grid, portable),
             paired: Strips::new::<T>(grid, Packing::Paired),
             single: Strips::new::<T>(grid, Packing::Single),
             design,
@@ -92,12 +90,11 @@ impl<T: Real> Tables<T> {
 pub(super) struct Worker<T> {
     /// The cells of a strip.
     pub(super) strip: Vec<Complex<T>>,
-    /// One column of the grid.
-    pub(super) line: Vec<Complex<T>>,
+    /// Columns of the grid, [`LANES`] of them.
+    pub(super) lines: Vec<Complex<T>>,
     /// One column of modes, ky = −K … K.
     pub(super) modes: Vec<Complex<T>>,
-    /// For the FFT.
-    pub(super) scratch: Vec<Complex<T>>,
+    pub(super) fft: FftScratch<T>,
 }
 
 /// The scratch spaces of all threads, kept between evaluations.
@@ -113,14 +110,13 @@ impl<T: Real> Workers<T> {
         let threads = if parallel { rayon::current_num_threads() } else { 1 };
         self.parallel = threads > 1;
         let zero = Complex::new(T::default(), T::default());
-        let scratch = |fft: &Arc<dyn Fft<T>>| fft.get_inplace_scratch_len();
         while self.workers.len() < threads {
             let height = tables.paired.height.max(tables.single.height);
             self.workers.push(Mutex::new(Worker {
                 strip: vec![zero; height * tables.paired.stride()],
-                line: vec![zero; tables.grid()],
+                lines: vec![zero; LANES * tables.grid()],
                 modes: vec![zero; 2 * tables.max_frequency + 1],
-                scratch: vec![zero; scratch(&tables.forward).max(scratch(&tables.inverse))],
+                fft: tables.ffts.scratch(tables.grid()),
             }));
         }
     }

@@ -107,6 +107,41 @@ impl<T: Real> Job for Gather<'_, '_, T> {
     }
 }
 
+/// The same with the kernel's derivatives, real rows in pairs: by z along x in the real, along y in
+/// the imaginary part of each sum.
+pub struct GatherGradient<'a, 'b, T>(pub(super) Gather<'a, 'b, T>);
+
+impl<T: Real> Job for GatherGradient<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        match self.0.taps.taps {
+            4 => self.0.gather_gradient::<FUSED, 4>(),
+            8 => self.0.gather_gradient::<FUSED, 8>(),
+            12 => self.0.gather_gradient::<FUSED, 12>(),
+            _ => self.0.gather_gradient::<FUSED, 16>(),
+        }
+    }
+}
+
+/// The values of all taps at `z` and their derivatives, by Horner's rule.
+#[inline(always)]
+fn differentiate<T: Real, const FUSED: bool, const TAPS: usize>(
+    polynomials: &[T],
+    z: T,
+) -> [[T; TAPS]; 2] {
+    let mut values = [T::default(); TAPS];
+    let mut slopes = values;
+    for row in polynomials.as_chunks::<TAPS>().0 {
+        for i in 0..TAPS {
+            slopes[i] = multiply_add::<T, FUSED>(slopes[i], z, values[i]);
+            values[i] = multiply_add::<T, FUSED>(values[i], z, row[i]);
+        }
+    }
+    [values, slopes]
+}
+
 /// The values of all taps at `z`, by Horner's rule.
 #[inline(always)]
 fn evaluate<T: Real, const FUSED: bool, const TAPS: usize>(polynomials: &[T], z: T) -> [T; TAPS] {
@@ -218,6 +253,37 @@ impl<T: Real> Gather<'_, '_, T> {
             for i in 0..TAPS {
                 out.re = multiply_add::<T, FUSED>(columns[i].re, x[i], out.re);
                 out.im = multiply_add::<T, FUSED>(columns[i].im, x[i], out.im);
+            }
+        }
+    }
+    #[inline(always)]
+    fn gather_gradient<const FUSED: bool, const TAPS: usize>(self) {
+        let Self { taps, points, shift, strip, sums } = self;
+        for (point, out) in points.iter().zip(sums) {
+            let [x, x_slopes] = differentiate::<T, FUSED, TAPS>(&taps.polynomials, point.zx);
+            let [y, y_slopes] = differentiate::<T, FUSED, TAPS>(&taps.polynomials, point.zy);
+            let row = i64::from(point.row) + shift;
+            let rows = Rows::under(taps.width, strip.packing, row, &y);
+            let slope_rows = Rows::under(taps.width, strip.packing, row, &y_slopes);
+            let (from, to) = strip.clip(rows.first, rows.count);
+            let mut columns = [T::default(); TAPS];
+            let mut slope_columns = columns;
+            for q in from..to {
+                let (even, odd) = rows.factors(q);
+                let (even_slope, odd_slope) = slope_rows.factors(q);
+                let cells = strip.cells::<TAPS>((rows.first + q as i64) as usize, point.column);
+                for i in 0..TAPS {
+                    let (a, b) = (cells[i].re, cells[i].im);
+                    columns[i] = multiply_add::<T, FUSED>(a, even, columns[i]);
+                    columns[i] = multiply_add::<T, FUSED>(b, odd, columns[i]);
+                    slope_columns[i] = multiply_add::<T, FUSED>(a, even_slope, slope_columns[i]);
+                    slope_columns[i] = multiply_add::<T, FUSED>(b, odd_slope, slope_columns[i]);
+                }
+            }
+            *out = Complex::new(T::default(), T::default());
+            for i in 0..TAPS {
+                out.re = multiply_add::<T, FUSED>(columns[i], x_slopes[i], out.re);
+                out.im = multiply_add::<T, FUSED>(slope_columns[i], x[i], out.im);
             }
         }
     }

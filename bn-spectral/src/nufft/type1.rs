@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use rustfft::num_complex::Complex;
 
+use super::batch::LANES;
+use super::ffts::Direction;
 use super::located::SortedPoints;
 use super::real::Real;
 use super::strip::{Packing, Strip};
@@ -55,9 +57,7 @@ pub(super) fn transform_rows<T: Real>(
             T::spread(Spread { taps, points, shift, strengths, strip: &mut strip });
         }
         strip.fold();
-        for row in strip.rows_mut() {
-            tables.forward.process_with_scratch(row, &mut worker.scratch);
-        }
+        strip.transform(&tables.ffts, Direction::Forward, &mut worker.fft);
         let (strip, columns) = (&strip, wanted.clone());
         T::to_columns(tables.simd, ToColumns { strip, columns, out: chunk });
     });
@@ -95,19 +95,35 @@ pub(super) fn transform_columns<T: Real, O: Send>(
     workers: &Workers<T>,
     take: impl Fn(usize, O, &GridColumn<'_, T>, &mut [Complex<T>]) + Sync,
 ) {
-    workers.each(outputs, |number, output, worker| {
-        let column = wanted.start + number;
-        let index = column - columns.range.start;
-        let line = &mut worker.line[..];
-        collect_column(tables, columns, spectrum, index, line);
-        // The table of 1/φ̂ is centred on k = 0.
-        let factor = match columns.packing {
-            Packing::Single => tables.deconvolution[column],
-            Packing::Paired => tables.deconvolution[column + tables.max_frequency] * T::narrow(0.5),
-        };
-        tables.forward.process_with_scratch(line, &mut worker.scratch);
-        take(column, output, &GridColumn { tables, line, factor }, &mut worker.modes);
+    let grid = tables.grid();
+    workers.each(in_batches(outputs), |batch, outputs, worker| {
+        let first = wanted.start + batch * LANES;
+        let lines = &mut worker.lines[..outputs.len() * grid];
+        for (column, line) in (first..).zip(lines.chunks_exact_mut(grid)) {
+            collect_column(tables, columns, spectrum, column - columns.range.start, line);
+        }
+        tables.ffts.transform(Direction::Forward, lines, grid, grid, &mut worker.fft);
+        for ((column, line), output) in (first..).zip(lines.chunks_exact(grid)).zip(outputs) {
+            // The table of 1/φ̂ is centred on k = 0.
+            let factor = match columns.packing {
+                Packing::Single => tables.deconvolution[column],
+                Packing::Paired => {
+                    tables.deconvolution[column + tables.max_frequency] * T::narrow(0.5)
+                }
+            };
+            take(column, output, &GridColumn { tables, line, factor }, &mut worker.modes);
+        }
     });
+}
+
+/// The items by [`LANES`], in order.
+fn in_batches<O>(items: Vec<O>) -> Vec<Vec<O>> {
+    let mut batches = Vec::with_capacity(items.len().div_ceil(LANES));
+    let mut items = items.into_iter().peekable();
+    while items.peek().is_some() {
+        batches.push(items.by_ref().take(LANES).collect());
+    }
+    batches
 }
 
 /// Column `index` of the spectrum, from all strips.

@@ -2,11 +2,13 @@
 
 use rustfft::num_complex::Complex;
 
+use super::batch::LANES;
+use super::ffts::Direction;
 use super::located::SortedPoints;
 use super::real::Real;
 use super::strip::{Packing, Strip, Strips};
 use super::tables::{Tables, Workers};
-use super::taps::Gather;
+use super::taps::{Gather, GatherGradient};
 use super::transpose::{FromColumns, Scale};
 
 /// Rows of the grid before their transform, from modes: `spectrum` holds, column by column, all
@@ -22,25 +24,38 @@ pub(super) fn transform_columns<T: Real>(
     let (grid, limit) = (tables.grid(), tables.max_frequency);
     let zero = Complex::new(T::default(), T::default());
     spectrum.resize(tables.columns(packing).len() * grid, zero);
-    workers.each(spectrum.chunks_mut(grid).collect(), |index, line: &mut [_], worker| {
-        fill(index, &mut worker.modes);
-        let factor = match packing {
-            Packing::Single => tables.deconvolution[index],
-            Packing::Paired => tables.deconvolution[index + limit],
-        };
-        let simd = tables.simd;
-        if packing == Packing::Paired && index == 0 {
-            make_hermitian(&mut worker.modes);
+    let batches = spectrum.chunks_mut(LANES * grid).collect();
+    workers.each(batches, |batch, lines: &mut [_], worker| {
+        for (index, line) in (batch * LANES..).zip(lines.chunks_exact_mut(grid)) {
+            fill(index, &mut worker.modes);
+            if packing == Packing::Paired && index == 0 {
+                make_hermitian(&mut worker.modes);
+            }
+            let factor = match packing {
+                Packing::Single => tables.deconvolution[index],
+                Packing::Paired => tables.deconvolution[index + limit],
+            };
+            spread_modes(tables, &worker.modes, factor, line);
         }
-        let (negative, positive) = worker.modes.split_at(limit);
-        let (before, after) = tables.deconvolution.split_at(limit);
-        let out = &mut line[grid - limit..];
-        T::scale(simd, Scale { out, from: negative, along: before, factor });
-        let out = &mut line[..=limit];
-        T::scale(simd, Scale { out, from: positive, along: after, factor });
-        line[limit + 1..grid - limit].fill(zero);
-        tables.inverse.process_with_scratch(line, &mut worker.scratch);
+        tables.ffts.transform(Direction::Inverse, lines, grid, grid, &mut worker.fft);
     });
+}
+
+/// Puts a column's modes where the FFT wants them, divided by the kernel's transform.
+fn spread_modes<T: Real>(
+    tables: &Tables<T>,
+    modes: &[Complex<T>],
+    factor: T,
+    line: &mut [Complex<T>],
+) {
+    let (grid, limit, simd) = (tables.grid(), tables.max_frequency, tables.simd);
+    let (negative, positive) = modes.split_at(limit);
+    let (before, after) = tables.deconvolution.split_at(limit);
+    let out = &mut line[grid - limit..];
+    T::scale(simd, Scale { out, from: negative, along: before, factor });
+    let out = &mut line[..=limit];
+    T::scale(simd, Scale { out, from: positive, along: after, factor });
+    line[limit + 1..grid - limit].fill(Complex::new(T::default(), T::default()));
 }
 
 /// The half of a column kx = 0 that makes real sums: (f(ky) + f(−ky)*)/2.
@@ -84,21 +99,44 @@ pub(super) fn transform_rows<T: Real>(
     sums: &mut PointSums<T>,
     workers: &Workers<T>,
 ) {
+    each_strip(tables, packing, spectrum, points, sums, workers, T::gather);
+}
+
+/// Transforms the real rows of `spectrum` and sums them under the derivatives of the points'
+/// kernels: by x in the real, by y in the imaginary part.
+pub(super) fn gradient_rows<T: Real>(
+    tables: &Tables<T>,
+    spectrum: &[Complex<T>],
+    points: &SortedPoints<T>,
+    sums: &mut PointSums<T>,
+    workers: &Workers<T>,
+) {
+    let gather = |job: Gather<'_, '_, T>| T::gather_gradient(GatherGradient(job));
+    each_strip(tables, Packing::Paired, spectrum, points, sums, workers, gather);
+}
+
+fn each_strip<T: Real>(
+    tables: &Tables<T>,
+    packing: Packing,
+    spectrum: &[Complex<T>],
+    points: &SortedPoints<T>,
+    sums: &mut PointSums<T>,
+    workers: &Workers<T>,
+    gather: impl Fn(Gather<'_, '_, T>) + Sync,
+) {
     let strips = tables.strips(packing);
     let shares = share(tables, strips, points, sums);
     workers.each(shares, |index, share, worker| {
         let mut strip = Strip::new(strips, index, &mut worker.strip);
         let columns = tables.columns(packing);
         T::from_columns(tables.simd, FromColumns { strip: &mut strip, columns, spectrum });
-        for row in strip.rows_mut() {
-            tables.inverse.process_with_scratch(row, &mut worker.scratch);
-        }
+        strip.transform(&tables.ffts, Direction::Inverse, &mut worker.fft);
         strip.unfold();
         let (before, shift) = strips.reaching(index, tables.width());
         let own = strips.grid_rows_of(index);
         for (rows, shift, sums) in [(before, shift, share.before), (own, 0, share.own)] {
             let (taps, points) = (&tables.taps, points.in_rows(rows));
-            T::gather(Gather { taps, points, shift, strip: &strip, sums });
+            gather(Gather { taps, points, shift, strip: &strip, sums });
         }
     });
 }

@@ -1,0 +1,233 @@
+//! Whether a point set can have a spectrum: what is known to be necessary.
+
+use std::f64::consts::{PI, TAU};
+
+use rayon::prelude::*;
+
+use crate::{HankelPlan, Target, j1_slice};
+
+/// Margins below 0 by less than this are rounding.
+const ROUNDING: f64 = 1e-9;
+/// g is looked at from 0 to this many times 1/√n, and to ½ at least, …
+const REACH: f64 = 14.0;
+/// … in steps of 1/√n over this, or finer where the spectrum reaches beyond 10·√n.
+const STEPS: f64 = 100.0;
+/// The most radii.
+const MOST_RADII: f64 = 40_000.0;
+/// Below this power a frequency counts as empty.
+const EMPTY: f64 = 1e-3;
+
+/// What is known about the realizability of a [`Target`].
+///
+/// A spectrum that point sets have, or come arbitrarily near to, has P(ν) ≥ 0 and g(r) ≥ 0
+/// (thesis eq. 5.11): both are checked, where they fail the worst and by how much. They are not
+/// sufficient (Costin and Lebowitz 2004; Kuna, Lebowitz and Speer 2007). Further necessary
+/// conditions that fail are among the [`warnings`](Self::warnings).
+///
+/// Where P was measured ([`Target::imitating`]), five standard deviations of g are allowed for.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Realizability {
+    /// Whether P ≥ 0 and g ≥ 0, up to rounding and the statistical error of measured spectra.
+    pub realizable: bool,
+    /// The least P …
+    pub min_power: f64,
+    /// … and where, in cycles per unit.
+    pub at_nu: f64,
+    /// g where it is least, or where it is the farthest below its statistical error, …
+    pub min_g: f64,
+    /// … and where, in unit lengths.
+    pub at_r: f64,
+    /// Further conditions that are known to be necessary and don't hold, or nearly don't.
+    pub warnings: Vec<Warning>,
+}
+
+/// A necessary condition beyond P ≥ 0 and g ≥ 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case", tag = "condition"))]
+#[non_exhaustive]
+pub enum Warning {
+    /// The variance of the number of points in a disk is at least θ(1 − θ), θ the fractional part of
+    /// the mean number: numbers are whole (Yamada 1961).
+    NumberVariance {
+        /// Radius of the disk in unit lengths.
+        radius: f64,
+        /// Variance of the number that the spectrum implies.
+        variance: f64,
+        /// What it is at least.
+        bound: f64,
+    },
+    /// There is no power below `edge` (cycles per unit), which disordered sets can't have beyond
+    /// √(2n/π): it fixes more numbers than there are coordinates (Uche, Stillinger and Torquato
+    /// 2004). Little power is possible, none is not.
+    Stealthy {
+        /// Up to where P < 0.001.
+        edge: f64,
+        /// √(2n/π).
+        limit: f64,
+    },
+    /// There is no power below `edge` (cycles per unit), where even the hexagonal lattice, of all sets
+    /// that with the longest shortest wave vector, has power.
+    BeyondHexagonal {
+        /// Up to where P < 0.001.
+        edge: f64,
+        /// √(2n/√3).
+        limit: f64,
+    },
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NumberVariance { radius, variance, bound } => write!(
+                f,
+                "the number of points in disks of radius {radius:.5} would vary by {variance:.4}, \
+                 but whole numbers vary by {bound:.4} at least"
+            ),
+            Self::Stealthy { edge, limit } => write!(
+                f,
+                "no power below {edge:.3} cycles per unit: disordered sets have some beyond {limit:.3}"
+            ),
+            Self::BeyondHexagonal { edge, limit } => write!(
+                f,
+                "no power below {edge:.3} cycles per unit, but even the hexagonal lattice has its \
+                 first at {limit:.3}"
+            ),
+        }
+    }
+}
+
+impl Realizability {
+    /// Checks a target. Some ten milliseconds for smooth ones, O(samples · 10⁴) for sampled ones.
+    pub fn of(target: &Target) -> Self {
+        let (min_power, at_nu) = least_power(target);
+        let (min_g, at_r, tolerance) = least_g(target);
+        let warnings = empty_region(target).into_iter().chain(number_variance(target)).collect();
+        Self {
+            realizable: min_power >= -ROUNDING && min_g >= -ROUNDING - tolerance,
+            min_power,
+            at_nu,
+            min_g,
+            at_r,
+            warnings,
+        }
+    }
+
+    /// Why the spectrum is not realizable, in words; none if it is.
+    pub fn reason(&self) -> Option<String> {
+        let Self { min_power, at_nu, min_g, at_r, .. } = self;
+        if self.realizable {
+            None
+        } else if *min_power < -ROUNDING {
+            Some(format!("the power would be {min_power:.4} at {at_nu:.3} cycles per unit"))
+        } else {
+            Some(format!("the RDF would be {min_g:.4} at the distance {at_r:.5}"))
+        }
+    }
+}
+
+/// Over a grid that holds both ends of every annulus and its middle.
+fn least_power(target: &Target) -> (f64, f64) {
+    let bounds = target.annuli();
+    let middles = bounds.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+    let samples = bounds.iter().copied().chain(middles).map(|nu| (target.power(nu), nu));
+    samples
+        .fold((1.0, target.end()), |least, sample| if sample.0 < least.0 { sample } else { least })
+}
+
+/// The least g less its tolerance: (g, r, tolerance).
+fn least_g(target: &Target) -> (f64, f64, f64) {
+    let root = target.density().points_per_unit_area().sqrt();
+    let finest = 1.0 / (STEPS * root).max(10.0 * target.end());
+    let range = (REACH / root).max(0.5);
+    let count = (range / finest).min(MOST_RADII);
+    let step = range / count;
+    let radii: Vec<f64> = (0..=count as usize).map(|i| i as f64 * step).collect();
+    let margins = |radii: &[f64]| -> (f64, f64, f64) {
+        let (g, error) = (target.rdf(radii), target.rdf_uncertainty(radii));
+        let all = radii.iter().zip(&g).zip(&error).map(|((&r, &g), &error)| (g, r, error));
+        all.min_by(|a, b| (a.0 + a.2).total_cmp(&(b.0 + b.2))).unwrap_or((1.0, 0.0, 0.0))
+    };
+    let coarse = margins(&radii);
+    let around: Vec<f64> =
+        (-20..=20).map(|i| (coarse.1 + step * f64::from(i) / 20.0).max(0.0)).collect();
+    let fine = margins(&around);
+    if fine.0 + fine.2 < coarse.0 + coarse.2 { fine } else { coarse }
+}
+
+/// Up to where there is no power, and whether that is too far.
+fn empty_region(target: &Target) -> Option<Warning> {
+    let n = target.density().points_per_unit_area();
+    let bounds = target.annuli();
+    let middle = |pair: &[f64]| target.power(0.5 * (pair[0] + pair[1]));
+    let loud = bounds.windows(2).position(|pair| middle(pair) >= EMPTY);
+    let edge = bounds[loud.unwrap_or(bounds.len() - 1)];
+    let (hexagonal, stealthy) = ((2.0 * n / 3.0_f64.sqrt()).sqrt(), (2.0 * n / PI).sqrt());
+    if edge > hexagonal * (1.0 + 1e-9) {
+        Some(Warning::BeyondHexagonal { edge, limit: hexagonal })
+    } else if edge > stealthy {
+        Some(Warning::Stealthy { edge, limit: stealthy })
+    } else {
+        None
+    }
+}
+
+/// The disk whose number variance is the farthest below its bound, if any is.
+fn number_variance(target: &Target) -> Option<Warning> {
+    let n = target.density().points_per_unit_area();
+    // What disks of these sizes see of higher frequencies is next to nothing.
+    let end = target.end().min(100.0 * n.sqrt());
+    if end == 0.0 {
+        return None;
+    }
+    // σ²(R) = n ∫ P (R J₁(2πRν)/ν)² 2πν dν, and nπR² for P = 1.
+    let largest = 3.5 / n.sqrt();
+    let plan = HankelPlan::new(&bounded(target, end), 0.25 / largest, &[0.0]);
+    let excess: Vec<f64> = plan.nodes().iter().map(|&nu| target.power(nu) - 1.0).collect();
+    let violation = |i: usize| {
+        let radius = largest * i as f64 / 350.0;
+        let x: Vec<f64> = plan.nodes().iter().map(|nu| TAU * radius * nu).collect();
+        let mut disk = vec![0.0; x.len()];
+        j1_slice(&x, &mut disk);
+        let values: Vec<f64> = (0..x.len())
+            .map(|i| excess[i] * (radius * disk[i] / plan.nodes()[i]).powi(2))
+            .collect();
+        let mut sum = [0.0];
+        plan.apply_into(&values, &mut sum);
+        let mean = n * PI * radius * radius;
+        let (variance, theta) = (mean + n * sum[0], mean.fract());
+        Warning::NumberVariance { radius, variance, bound: theta * (1.0 - theta) }
+    };
+    let lack = |warning: &Warning| match *warning {
+        Warning::NumberVariance { variance, bound, .. } => bound - variance,
+        _ => 0.0,
+    };
+    let all: Vec<Warning> = (30..=350).into_par_iter().map(violation).collect();
+    // Quadrature over annuli of a sampled curve is good to about 1e-3.
+    all.into_iter().max_by(|a, b| lack(a).total_cmp(&lack(b))).filter(|worst| lack(worst) > 2e-3)
+}
+
+/// Break points for a quadrature of P: where it may jump, unless it is tabulated more finely than
+/// the quadrature needs.
+fn bounded(target: &Target, end: f64) -> Vec<f64> {
+    let bounds: Vec<f64> = target.annuli().into_iter().filter(|&b| b > 0.0 && b < end).collect();
+    let breaks = if bounds.len() <= 4096 { bounds } else { Vec::new() };
+    std::iter::once(0.0).chain(breaks).chain([end]).collect()
+}
+
+/// Which members of a family of spectra with two parameters are realizable: the smaller of the two
+/// margins, min P and min g, for each `x` and `y`, row by row of equal `y`.
+///
+/// NaN where `family` gives no target.
+pub fn feasible_region(
+    xs: &[f64],
+    ys: &[f64],
+    family: impl Fn(f64, f64) -> Option<Target> + Sync,
+) -> Vec<f64> {
+    let margin = |i: usize| {
+        let target = family(xs[i % xs.len()], ys[i / xs.len()])?;
+        Some(least_power(&target).0.min(least_g(&target).0))
+    };
+    (0..xs.len() * ys.len()).into_par_iter().map(|i| margin(i).unwrap_or(f64::NAN)).collect()
+}

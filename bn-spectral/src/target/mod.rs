@@ -1,0 +1,344 @@
+//! Spectra to aim at: what a point set's radial power should be, and the RDF that goes with it.
+
+mod annuli;
+mod sampled;
+mod single_peak;
+
+use bn_core::{Curve, Density, PointSet};
+use thiserror::Error;
+
+use crate::{NufftError, PeriodogramOptions, RadialPower, step_rdf};
+
+use annuli::{Annuli, steps_between};
+use sampled::{PowerSamples, RdfSamples};
+pub use single_peak::SinglePeak;
+
+/// Rings of a spectrum that is to be imitated reach to this times √n.
+const IMITATED: f64 = 6.0;
+
+/// No parameter is larger.
+const HIGHEST: f64 = 1e9;
+
+/// Why something is no target.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum TargetError {
+    /// A parameter is NaN, infinite or outside its range.
+    #[error("{name} is {value}; {need}")]
+    Parameter {
+        /// The parameter.
+        name: &'static str,
+        /// What it was.
+        value: f64,
+        /// What it must be.
+        need: &'static str,
+    },
+    /// A curve has fewer than two samples, or more than [`Target::MAX_SAMPLES`].
+    #[error("a curve of {count} samples; a target needs 2 to {}", Target::MAX_SAMPLES)]
+    Count {
+        /// How many there were.
+        count: usize,
+    },
+    /// An abscissa is negative, not finite, or not above the one before.
+    #[error("abscissa {index} is {value}; abscissae must ascend from 0 or more")]
+    Abscissa {
+        /// Its number from 0.
+        index: usize,
+        /// What it was.
+        value: f64,
+    },
+    /// A value is not a finite number.
+    #[error("value {index} is {value}; a curve needs finite numbers")]
+    Value {
+        /// Its number from 0.
+        index: usize,
+        /// What it was.
+        value: f64,
+    },
+    /// There is no part to combine, or the parts differ in density.
+    #[error("a combination needs parts, all of one density")]
+    Parts,
+    /// The sets to imitate can't be measured.
+    #[error(transparent)]
+    Spectrum(#[from] NufftError),
+    /// There is no set to imitate, or the sets differ in size.
+    #[error("the sets to imitate must be of one size, and at least one")]
+    Sets,
+}
+
+/// A radial power spectrum P(ν) at density n, ν > 0 in cycles per unit, with P → 1 towards high
+/// frequencies, and the RDF g(r) that it is the transform of (thesis eq. 5.3; 5.10):
+///
+/// g(r) = 1 + (2π/n) ∫ ν (P(ν) − 1) J₀(2πνr) dν,  P(ν) = 1 + 2πn ∫ r (g(r) − 1) J₀(2πνr) dr.
+///
+/// Closed forms are used where they exist: the step; annuli for sampled curves, whose samples stand
+/// for the halves of their neighbourhood each (exact for such a curve, O(Δ²) for a smooth one that
+/// it samples); Gauss quadrature over the band where a smoothed peak differs from 0 and 1.
+///
+/// ```
+/// use bn_core::Density;
+/// use bn_spectral::{Target, highest_step};
+///
+/// let density = Density::new(1024);
+/// let step = Target::step(density, highest_step(1024.0))?;
+/// assert_eq!((step.power(10.0), step.power(20.0)), (0.0, 1.0));
+/// assert!(step.rdf(&[0.0])[0].abs() < 1e-15); // just realizable
+/// # Ok::<(), bn_spectral::TargetError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    density: Density,
+    shape: Shape,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Shape {
+    /// H(ν − ν₀).
+    Step(f64),
+    Peak(SinglePeak),
+    Power(PowerSamples),
+    Rdf(Box<RdfSamples>),
+    /// 1 + Σ w (P − 1).
+    Sum(Vec<(f64, Shape)>),
+    Product(Vec<Shape>),
+}
+
+impl Target {
+    /// The most samples of a curve.
+    pub const MAX_SAMPLES: usize = 1 << 17;
+
+    /// Step blue noise, P(ν) = H(ν − ν₀), ν₀ in cycles per unit (thesis eq. 5.12).
+    ///
+    /// # Errors
+    /// If ν₀ is negative or not finite.
+    pub fn step(density: Density, nu0: f64) -> Result<Self, TargetError> {
+        check("nu0", nu0, 0.0, "the step must lie at 0 or a positive frequency, below 1e9")?;
+        Ok(Self { density, shape: Shape::Step(nu0) })
+    }
+
+    /// Single-peak blue noise.
+    ///
+    /// # Errors
+    /// If a parameter is out of the range that [`SinglePeak`] states.
+    pub fn single_peak(density: Density, peak: SinglePeak) -> Result<Self, TargetError> {
+        peak.check()?;
+        Ok(Self { density, shape: Shape::Peak(peak) })
+    }
+
+    /// The spectrum with samples (ν, P), ν ascending, linear between them; P before the first
+    /// sample is that of the first, beyond the last it is 1.
+    ///
+    /// P may be negative, which [`Realizability`](crate::Realizability) will point out.
+    ///
+    /// # Errors
+    /// If there are too few or many samples, or they aren't finite and ascending.
+    pub fn power_curve(density: Density, samples: &[(f64, f64)]) -> Result<Self, TargetError> {
+        check_samples(samples)?;
+        Ok(Self { density, shape: Shape::Power(PowerSamples::new(samples)) })
+    }
+
+    /// The spectrum whose RDF has samples (r, g), r ascending in unit lengths; g before the first
+    /// sample is that of the first, beyond the last it is 1. Where g doesn't settle at 1, g − 1 is
+    /// tapered towards its end (Blackman), or the spectrum would ring.
+    ///
+    /// # Errors
+    /// As [`Self::power_curve`].
+    pub fn rdf_curve(density: Density, samples: &[(f64, f64)]) -> Result<Self, TargetError> {
+        check_samples(samples)?;
+        Ok(Self { density, shape: Shape::Rdf(Box::new(RdfSamples::new(density, samples))) })
+    }
+
+    /// The mean radial power of `sets`, ring by ring up to 6√n, as seen at the density of `points`
+    /// points: frequencies scale with its square root (thesis §5.2.3).
+    ///
+    /// # Errors
+    /// If there is no set, the sets differ in size, or there is no point to make.
+    pub fn imitating(sets: &[PointSet], points: usize) -> Result<Self, TargetError> {
+        let n = sets.first().ok_or(TargetError::Sets)?.len();
+        if points == 0 || sets.iter().any(|set| set.len() != n) {
+            return Err(TargetError::Sets);
+        }
+        let density = Density::new(points);
+        let limit = (IMITATED * (n as f64).sqrt()).ceil() as usize;
+        let radial = RadialPower::of(sets, PeriodogramOptions::new(limit))?;
+        let scale = (points as f64 / n as f64).sqrt();
+        let curve = radial.curve().ok_or(TargetError::Sets)?;
+        let samples: Vec<_> = curve.iter().map(|(nu, power)| (nu * scale, power)).collect();
+        // Of R disordered sets a ring of c modes has a mean of variance 2P²/(cR).
+        let noise = samples.iter().zip(radial.modes()).map(|((_, power), &modes)| {
+            power * (2.0 * modes as f64 / sets.len() as f64).sqrt() / n as f64
+        });
+        let measured = PowerSamples::measured(&samples, noise.collect());
+        Ok(Self { density, shape: Shape::Power(measured) })
+    }
+
+    /// 1 + Σ w·(P − 1) over weighted parts: with weights that add to 1 the mean spectrum.
+    ///
+    /// # Errors
+    /// If there is no part, a weight is not finite, or the parts differ in density.
+    pub fn sum(parts: Vec<(f64, Self)>) -> Result<Self, TargetError> {
+        let density = common_density(parts.iter().map(|(_, part)| part))?;
+        for (weight, _) in &parts {
+            check("weight", *weight, -HIGHEST, "weights must be finite, below 1e9")?;
+        }
+        let shapes = parts.into_iter().map(|(weight, part)| (weight, part.shape)).collect();
+        Ok(Self { density, shape: Shape::Sum(shapes) })
+    }
+
+    /// The product of spectra.
+    ///
+    /// # Errors
+    /// If there is no part or the parts differ in density.
+    pub fn product(parts: Vec<Self>) -> Result<Self, TargetError> {
+        let density = common_density(parts.iter())?;
+        let shapes = parts.into_iter().map(|part| part.shape).collect();
+        Ok(Self { density, shape: Shape::Product(shapes) })
+    }
+
+    /// The density n that frequencies and distances refer to.
+    pub fn density(&self) -> Density {
+        self.density
+    }
+
+    /// P(ν) at ν ≥ 0 cycles per unit, without the point mass at 0.
+    pub fn power(&self, nu: f64) -> f64 {
+        self.shape.power(nu)
+    }
+
+    /// g at the radii `r` ≥ 0, in unit lengths. O(samples · radii), 5 to 10 ns each, on all threads.
+    pub fn rdf(&self, r: &[f64]) -> Vec<f64> {
+        self.shape.rdf(self.density.points_per_unit_area(), r)
+    }
+
+    /// g in `bins` bins over [0, ½), each the mean over its annulus' width by its midpoint.
+    pub fn rdf_histogram(&self, bins: usize) -> Curve {
+        let width = 0.5 / bins as f64;
+        let middles: Vec<f64> = (0..bins).map(|i| (i as f64 + 0.5) * width).collect();
+        Curve::new(0.0, width, self.rdf(&middles))
+    }
+
+    /// The frequency from where on P = 1, as far as it is known.
+    pub fn end(&self) -> f64 {
+        self.shape.end()
+    }
+
+    /// Five standard deviations of the statistical error that g has because P was measured, at `r`.
+    pub(crate) fn rdf_uncertainty(&self, r: &[f64]) -> Vec<f64> {
+        match &self.shape {
+            Shape::Power(samples) => samples.rdf_uncertainty(r),
+            _ => vec![0.0; r.len()],
+        }
+    }
+
+    /// Bounds of annuli over which P varies little; jumps lie on bounds.
+    pub(crate) fn annuli(&self) -> Vec<f64> {
+        self.shape.bounds(self.density.points_per_unit_area())
+    }
+}
+
+impl Shape {
+    fn power(&self, nu: f64) -> f64 {
+        match self {
+            Self::Step(nu0) => f64::from(nu >= *nu0),
+            Self::Peak(peak) => peak.power(nu),
+            Self::Power(samples) => samples.power(nu),
+            Self::Rdf(samples) => samples.power(nu),
+            Self::Sum(parts) => {
+                1.0 + parts.iter().map(|(w, part)| w * (part.power(nu) - 1.0)).sum::<f64>()
+            }
+            Self::Product(parts) => parts.iter().map(|part| part.power(nu)).product(),
+        }
+    }
+
+    fn rdf(&self, n: f64, r: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Step(nu0) => r.iter().map(|&r| step_rdf(n, *nu0, r)).collect(),
+            Self::Peak(peak) => peak.rdf(n, r),
+            Self::Power(samples) => samples.rdf(n, r),
+            Self::Rdf(samples) => r.iter().map(|&r| samples.rdf(r)).collect(),
+            Self::Sum(parts) => {
+                let mut sum = vec![1.0; r.len()];
+                for (weight, part) in parts {
+                    for (sum, g) in sum.iter_mut().zip(part.rdf(n, r)) {
+                        *sum += weight * (g - 1.0);
+                    }
+                }
+                sum
+            }
+            // The transform of a product is a convolution: numerically, from fine annuli.
+            Self::Product(_) => {
+                let bounds = self.bounds(n);
+                let middle = |pair: &[f64]| self.power(0.5 * (pair[0] + pair[1])) - 1.0;
+                let excess: Vec<f64> = bounds.windows(2).map(middle).collect();
+                Annuli::new(&bounds, &excess).rdf(n, r)
+            }
+        }
+    }
+
+    fn end(&self) -> f64 {
+        match self {
+            Self::Step(nu0) => *nu0,
+            Self::Peak(peak) => peak.band().1,
+            Self::Power(samples) => samples.end(),
+            Self::Rdf(samples) => samples.end(),
+            Self::Sum(parts) => parts.iter().map(|(_, part)| part.end()).fold(0.0, f64::max),
+            Self::Product(parts) => parts.iter().map(Shape::end).fold(0.0, f64::max),
+        }
+    }
+
+    /// Bounds of annuli over which P varies little; jumps lie on bounds.
+    fn bounds(&self, n: f64) -> Vec<f64> {
+        match self {
+            Self::Step(nu0) => vec![0.0, *nu0],
+            Self::Peak(peak) => peak.bounds(),
+            Self::Power(samples) => samples.bounds(),
+            Self::Rdf(samples) => steps_between(0.0, samples.end(), n.sqrt() / 64.0),
+            Self::Sum(parts) => merged(parts.iter().map(|(_, part)| part.bounds(n))),
+            Self::Product(parts) => merged(parts.iter().map(|part| part.bounds(n))),
+        }
+    }
+}
+
+fn merged(parts: impl Iterator<Item = Vec<f64>>) -> Vec<f64> {
+    let mut all: Vec<f64> = parts.flatten().collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+fn common_density<'a>(mut parts: impl Iterator<Item = &'a Target>) -> Result<Density, TargetError> {
+    let density = parts.next().ok_or(TargetError::Parts)?.density;
+    if parts.all(|part| part.density == density) { Ok(density) } else { Err(TargetError::Parts) }
+}
+
+/// Checks that a parameter is at least `least` and not absurdly large.
+fn check(
+    name: &'static str,
+    value: f64,
+    least: f64,
+    need: &'static str,
+) -> Result<(), TargetError> {
+    if (least..=HIGHEST).contains(&value) {
+        Ok(())
+    } else {
+        Err(TargetError::Parameter { name, value, need })
+    }
+}
+
+fn check_samples(samples: &[(f64, f64)]) -> Result<(), TargetError> {
+    if !(2..=Target::MAX_SAMPLES).contains(&samples.len()) {
+        return Err(TargetError::Count { count: samples.len() });
+    }
+    let mut before = -f64::MIN_POSITIVE;
+    for (index, &(x, y)) in samples.iter().enumerate() {
+        // NaN is neither above nor finite.
+        if !(x > before && x.is_finite()) {
+            return Err(TargetError::Abscissa { index, value: x });
+        }
+        if !y.is_finite() {
+            return Err(TargetError::Value { index, value: y });
+        }
+        before = x;
+    }
+    Ok(())
+}

@@ -1,0 +1,127 @@
+//! Single-peak blue noise: a smoothed step with a peak at its edge.
+
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+use bn_core::{Curve, Density};
+
+use super::annuli::{Annuli, steps_between};
+use super::{TargetError, check};
+use crate::HankelPlan;
+
+/// Standard deviations from its centre beyond which a Gaussian counts as 0: 1.1e-19 of it is there.
+const REACH: f64 = 9.0;
+/// Oscillations of a Bessel function over the band up to which it is integrated by quadrature.
+const MOST_TURNS: f64 = 1e4;
+/// The thesis's parameters belong to this many points …
+const REFERENCE_POINTS: f64 = 4096.0;
+
+/// P = G ⋆ (H(ν − ν₀) + p₀·box(ν)): a step at ν₀ and above it a box of area p₀ on
+/// [ν₀, ν₀ + width), smoothed along ν by a Gaussian of deviation σ (thesis §5.3.3, where the box is
+/// a Dirac peak; the authors' program uses a box). All in cycles per unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct SinglePeak {
+    /// ν₀ ≥ 0.
+    pub nu0: f64,
+    /// p₀ ≥ 0, the power of the peak in excess of the step: (height − 1)·width.
+    pub peak: f64,
+    /// σ ≥ 0 of the Gaussian.
+    pub sigma: f64,
+    /// Width of the box before smoothing, above 0.
+    pub width: f64,
+}
+
+impl SinglePeak {
+    /// The thesis's reference pattern, figure 5.7 d: at 4096 points 60 cycles, height 20 over one
+    /// cycle, σ = 2.5 cycles; at n points all of them times √(n/4096). It is not realizable: what a
+    /// point set can reach is near it.
+    pub fn thesis(density: Density) -> Self {
+        let scale = (density.points_per_unit_area() / REFERENCE_POINTS).sqrt();
+        Self { nu0: 60.0 * scale, peak: 19.0 * scale, sigma: 2.5 * scale, width: scale }
+    }
+
+    /// P(ν).
+    pub fn power(self, nu: f64) -> f64 {
+        let step = self.smoothed_step(nu - self.nu0);
+        step + self.peak / self.width * (step - self.smoothed_step(nu - self.nu0 - self.width))
+    }
+
+    /// The spectrum as the authors' program tabulates it: in bins of half a cycle over [0, n/2), the
+    /// two bins from `nu0` (a whole number of cycles) on have `height`, then all is smoothed by a
+    /// Gaussian of `sigma_bins` bins. Abscissae are the bins' lower edges.
+    ///
+    /// # Panics
+    /// If `sigma_bins` is negative or not finite.
+    pub fn tabulated(density: Density, nu0: u32, height: f64, sigma_bins: f64) -> Curve {
+        let bins = density.points_per_unit_area().max(2.0) as usize;
+        let value = |nu: f64| {
+            let above = nu - f64::from(nu0);
+            if above < 0.0 {
+                0.0
+            } else if above < 1.0 {
+                height
+            } else {
+                1.0
+            }
+        };
+        Curve::sample(0.0, 0.5, bins, value).smoothed(0.5 * sigma_bins)
+    }
+
+    /// H smoothed, at `x` above its edge.
+    fn smoothed_step(self, x: f64) -> f64 {
+        if self.sigma > 0.0 {
+            0.5 * libm::erfc(-x / self.sigma * FRAC_1_SQRT_2)
+        } else {
+            f64::from(x >= 0.0)
+        }
+    }
+
+    pub(super) fn check(self) -> Result<(), TargetError> {
+        check("nu0", self.nu0, 0.0, "it must be 0 or a positive frequency, below 1e9")?;
+        check("peak", self.peak, 0.0, "the peak's power must be 0 or positive, below 1e9")?;
+        check("sigma", self.sigma, 0.0, "a Gaussian's width must be 0 or positive, below 1e9")?;
+        check("width", self.width, f64::MIN_POSITIVE, "a peak needs a width, below 1e9")
+    }
+
+    /// Where P is neither 0 nor 1.
+    pub(super) fn band(self) -> (f64, f64) {
+        let reach = REACH * self.sigma;
+        ((self.nu0 - reach).max(0.0), self.nu0 + self.width + reach)
+    }
+
+    /// Bounds of annuli fine enough for P to count as constant on each: jumps, and 16 to σ.
+    pub(super) fn bounds(self) -> Vec<f64> {
+        let (from, to) = self.band();
+        if self.sigma > 0.0 {
+            let mut bounds = steps_between(from, to, self.sigma / 16.0);
+            if from > 0.0 {
+                bounds.insert(0, 0.0);
+            }
+            bounds
+        } else {
+            vec![0.0, self.nu0, self.nu0 + self.width]
+        }
+    }
+
+    /// g(r) at density `n`, to about 1e-12: a disk for P = 0, quadrature over the band.
+    pub(super) fn rdf(self, n: f64, r: &[f64]) -> Vec<f64> {
+        let (from, to) = self.band();
+        if self.sigma == 0.0 {
+            let excess = [-1.0, self.peak / self.width];
+            return Annuli::new(&[0.0, self.nu0, self.nu0 + self.width], &excess).rdf(n, r);
+        }
+        if (to - from) * r.iter().copied().fold(0.0, f64::max) > MOST_TURNS {
+            let bounds = self.bounds();
+            let middle = |pair: &[f64]| self.power(0.5 * (pair[0] + pair[1])) - 1.0;
+            let excess: Vec<f64> = bounds.windows(2).map(middle).collect();
+            return Annuli::new(&bounds, &excess).rdf(n, r);
+        }
+        let mut g = Annuli::new(&[0.0, from], &[-1.0]).rdf(n, r);
+        // The Gaussian is as smooth as 16 Gauss nodes can be asked for over 2σ.
+        let plan = HankelPlan::new(&[from, to], PI / 2.0 * self.sigma, r);
+        for (g, band) in g.iter_mut().zip(plan.transform(|nu| self.power(nu) - 1.0)) {
+            *g += band / n;
+        }
+        g
+    }
+}
