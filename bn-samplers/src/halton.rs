@@ -1,10 +1,10 @@
 //! Halton's sequence in bases 2 and 3.
 
-use bn_core::{DVec2, Observer, Progress, Seed};
+use bn_core::{DVec2, Observer, Seed};
 use rand::Rng;
 
 use crate::digits::{permuted_radical_inverse, radical_inverse};
-use crate::error::{check_count, observe, reserve};
+use crate::placing::{START, begin_placing, start};
 use crate::{
     CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
     SampleError, Sampler,
@@ -37,13 +37,7 @@ pub(crate) const METHOD: Method = Method {
     counts: CountRule::Any,
     seeded: false,
     options: &[
-        OptionSpec {
-            name: "start",
-            kind: OptionKind::Integer { min: 0, max: u32::MAX as u64 },
-            default: DefaultValue::Value("0"),
-            help: "index of the first point of the sequence",
-            unit: "",
-        },
+        START,
         OptionSpec {
             name: "scramble",
             kind: OptionKind::Choice(&["none", "owen"]),
@@ -54,7 +48,7 @@ pub(crate) const METHOD: Method = Method {
     ],
     build: |options| {
         Ok(Box::new(Halton {
-            start: options.integer("start").unwrap_or(0) as u32,
+            start: start(options),
             scramble: options.choice("scramble") == Some("owen"),
         }))
     },
@@ -63,9 +57,7 @@ pub(crate) const METHOD: Method = Method {
 
 impl Sampler for Halton {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
-        check_count(METHOD.name, n)?;
-        observe(observer, &Progress::new("placing", 0, Some(n as u64)))?;
-        let mut points = reserve(n)?;
+        let mut points = begin_placing(METHOD.name, n, observer)?;
         let indices = (u64::from(self.start)..).take(n);
         if self.scramble {
             let mut rng = seed.stream(0);

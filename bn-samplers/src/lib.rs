@@ -37,6 +37,7 @@ mod names;
 mod net;
 mod options;
 mod particles;
+mod placing;
 mod poisson_disk;
 mod r2;
 mod registry;

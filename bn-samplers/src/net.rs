@@ -1,8 +1,8 @@
 //! (0,m,2)-nets in base 2.
 
-use bn_core::{DVec2, Observer, PointSet, Progress, Seed};
+use bn_core::{DVec2, Observer, Seed};
 
-use crate::error::{check_count, observe, reserve};
+use crate::placing::{begin_placing, between_counts};
 use crate::{
     CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
     SampleError, Sampler,
@@ -79,13 +79,12 @@ impl Sampler for Net {
         _seed: Seed,
         observer: &dyn Observer,
     ) -> Result<Sample, SampleError> {
-        check_count(METHOD.name, n)?;
+        let mut points = begin_placing(METHOD.name, n, observer)?;
         if !n.is_power_of_two() {
-            return Err(no_power_of_two(n));
+            let above = n.next_power_of_two();
+            return Err(between_counts(METHOD.name, n, "a power of 2", [above / 2, above]));
         }
-        observe(observer, &Progress::new("placing", 0, Some(n as u64)))?;
         let m = n.trailing_zeros();
-        let mut points = reserve(n)?;
         points.extend((0..n as u32).map(|i| {
             let y = match self.construction {
                 Construction::Maximin => maximin(m, i),
@@ -96,14 +95,6 @@ impl Sampler for Net {
         }));
         Ok(Sample::new(points, Report::new().with("m", u64::from(m))))
     }
-}
-
-fn no_power_of_two(n: usize) -> SampleError {
-    let above = n.next_power_of_two();
-    let below = above / 2;
-    let nearest = if n - below <= above - n { below } else { above };
-    let nearest = nearest.min(PointSet::MAX_POINTS);
-    SampleError::InvalidCount { method: METHOD.name, n, need: "a power of 2", nearest }
 }
 
 /// The lowest `bits` bits of `i`, reversed.

@@ -1,9 +1,9 @@
 //! The R2 sequence: Kronecker's sequence of the plastic number.
 
-use bn_core::{DVec2, Observer, Progress, Seed};
+use bn_core::{DVec2, Observer, Seed};
 use rand::Rng;
 
-use crate::error::{check_count, observe, reserve};
+use crate::placing::{START, begin_placing, start};
 use crate::{
     CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
     SampleError, Sampler,
@@ -33,13 +33,7 @@ pub(crate) const METHOD: Method = Method {
     counts: CountRule::Any,
     seeded: false,
     options: &[
-        OptionSpec {
-            name: "start",
-            kind: OptionKind::Integer { min: 0, max: u32::MAX as u64 },
-            default: DefaultValue::Value("0"),
-            help: "index of the first point of the sequence",
-            unit: "",
-        },
+        START,
         OptionSpec {
             name: "shift",
             kind: OptionKind::Flag,
@@ -48,12 +42,7 @@ pub(crate) const METHOD: Method = Method {
             unit: "",
         },
     ],
-    build: |options| {
-        Ok(Box::new(R2 {
-            start: options.integer("start").unwrap_or(0) as u32,
-            shift: options.flag("shift"),
-        }))
-    },
+    build: |options| Ok(Box::new(R2 { start: start(options), shift: options.flag("shift") })),
     version: 1,
 };
 
@@ -62,15 +51,13 @@ const STEP: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
 
 impl Sampler for R2 {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
-        check_count(METHOD.name, n)?;
-        observe(observer, &Progress::new("placing", 0, Some(n as u64)))?;
+        let mut points = begin_placing(METHOD.name, n, observer)?;
         let mut rng = seed.stream(0);
         let origin = [(); 2].map(|()| if self.shift { rng.next_u64() } else { 1 << 63 });
         let coordinate = |axis: usize, i: u64| {
             let fixed = origin[axis].wrapping_add(STEP[axis].wrapping_mul(i));
             (fixed >> 11) as f64 / (1_u64 << 53) as f64
         };
-        let mut points = reserve(n)?;
         let indices = (u64::from(self.start)..).take(n);
         points.extend(indices.map(|i| DVec2::new(coordinate(0, i), coordinate(1, i))));
         Ok(Sample::new(points, Report::new()))

@@ -1,8 +1,8 @@
 //! The square grid.
 
-use bn_core::{DVec2, Observer, Progress, Seed};
+use bn_core::{DVec2, Observer, Seed};
 
-use crate::error::{check_count, observe, reserve};
+use crate::placing::{begin_placing, between_counts};
 use crate::{CountRule, Method, PointOrder, Report, Sample, SampleError, Sampler};
 
 /// The square grid: the centres of m × m equal cells, row by row; n = m².
@@ -35,30 +35,17 @@ impl Sampler for Regular {
         _seed: Seed,
         observer: &dyn Observer,
     ) -> Result<Sample, SampleError> {
-        check_count(METHOD.name, n)?;
-        observe(observer, &Progress::new("placing", 0, Some(n as u64)))?;
+        let mut points = begin_placing(METHOD.name, n, observer)?;
         let side = n.isqrt();
         if side * side != n {
-            return Err(not_square(n));
+            let squares = [side * side, (side + 1) * (side + 1)];
+            return Err(between_counts(METHOD.name, n, "a square number", squares));
         }
         let centre = |i: usize| (i as f64 + 0.5) / side as f64;
-        let mut points = reserve(n)?;
         for row in 0..side {
             points.extend((0..side).map(|column| DVec2::new(centre(column), centre(row))));
         }
         Ok(Sample::new(points, Report::new()))
-    }
-}
-
-fn not_square(n: usize) -> SampleError {
-    let below = n.isqrt();
-    let above = below + 1;
-    let nearest = if n - below * below <= above * above - n { below } else { above };
-    SampleError::InvalidCount {
-        method: METHOD.name,
-        n,
-        need: "a square number",
-        nearest: nearest * nearest,
     }
 }
 

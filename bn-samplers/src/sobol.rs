@@ -1,10 +1,10 @@
 //! The first two dimensions of Sobol's sequence.
 
-use bn_core::{DVec2, Observer, Progress, Seed};
+use bn_core::{DVec2, Observer, Seed};
 use rand::Rng;
 
 use crate::digits::nested;
-use crate::error::{check_count, observe, reserve};
+use crate::placing::{START, begin_placing, start};
 use crate::{
     CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
     SampleError, Sampler,
@@ -49,13 +49,7 @@ pub(crate) const METHOD: Method = Method {
     counts: CountRule::Any,
     seeded: false,
     options: &[
-        OptionSpec {
-            name: "start",
-            kind: OptionKind::Integer { min: 0, max: u32::MAX as u64 },
-            default: DefaultValue::Value("0"),
-            help: "index of the first point of the sequence",
-            unit: "",
-        },
+        START,
         OptionSpec {
             name: "scramble",
             kind: OptionKind::Choice(&["none", "xor", "owen"]),
@@ -66,7 +60,7 @@ pub(crate) const METHOD: Method = Method {
     ],
     build: |options| {
         Ok(Box::new(Sobol {
-            start: options.integer("start").unwrap_or(0) as u32,
+            start: start(options),
             scramble: match options.choice("scramble") {
                 Some("xor") => Scramble::Xor,
                 Some("owen") => Scramble::Owen,
@@ -82,8 +76,7 @@ const DIGITS: u32 = f64::MANTISSA_DIGITS;
 
 impl Sampler for Sobol {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
-        check_count(METHOD.name, n)?;
-        observe(observer, &Progress::new("placing", 0, Some(n as u64)))?;
+        let mut points = begin_placing(METHOD.name, n, observer)?;
         let mut rng = seed.stream(0);
         let keys = [rng.next_u64(), rng.next_u64()];
         let coordinate = |axis: usize, bits: u64| match self.scramble {
@@ -94,7 +87,6 @@ impl Sampler for Sobol {
             }
         };
         let directions = pascal_directions();
-        let mut points = reserve(n)?;
         points.extend((u64::from(self.start)..).take(n).map(|i| {
             let x = i.reverse_bits() >> (u64::BITS - DIGITS);
             DVec2::new(coordinate(0, x), coordinate(1, combine(&directions, i)))
