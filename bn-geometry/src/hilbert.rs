@@ -2,6 +2,21 @@
 
 use bn_core::DVec2;
 
+/// The indices of points of [0, 1)² in their order along a Hilbert curve, equal places in the order
+/// given: neighbours in this order are neighbours on the torus. O(n log n).
+///
+/// ```
+/// use bn_core::DVec2;
+///
+/// let corners = [(0.1, 0.1), (0.9, 0.9), (0.9, 0.1), (0.1, 0.9)].map(DVec2::from);
+/// assert_eq!(bn_geometry::hilbert_order(&corners), [0, 3, 1, 2]);
+/// ```
+pub fn hilbert_order(points: &[DVec2]) -> Vec<u32> {
+    let mut curve: Vec<(u64, u32)> = points.iter().map(|&p| index(p)).zip(0..).collect();
+    curve.sort_unstable();
+    curve.into_iter().map(|(_, i)| i).collect()
+}
+
 /// Bits a coordinate.
 const ORDER: u32 = 32;
 

@@ -87,6 +87,14 @@ pub struct Sign {
     pub is_sure: bool,
 }
 
+impl Sign {
+    /// Whether the exact number is positive; asks `exactly` where rounding leaves that open.
+    #[inline]
+    pub fn or_else(self, exactly: impl FnOnce() -> bool) -> bool {
+        if self.is_sure { self.is_positive } else { exactly() }
+    }
+}
+
 /// Whether q lies inside the circle through u, v and p, which turn counter-clockwise, given the
 /// angle at p from u to v and the angle at q from v to u: whether they add up to more than π, or,
 /// with p and q on the same side, the one at q is the larger.
@@ -111,7 +119,7 @@ pub fn is_inside(at_p: Angle, at_q: Angle) -> Sign {
 #[inline]
 pub fn in_circle(a: DVec2, b: DVec2, c: DVec2) -> bool {
     let inside = is_inside(Angle::between(a - c, b - c), Angle::between(b, a));
-    if inside.is_sure { inside.is_positive } else { in_circle_exactly(a, b, c) }
+    inside.or_else(|| in_circle_exactly(a, b, c))
 }
 
 /// [`in_circle`] in integers.

@@ -3,6 +3,8 @@
 use bn_core::{CellGrid, DVec2, PointSet};
 use rayon::prelude::*;
 
+use crate::Triangulation;
+
 /// The distance of every point to its nearest neighbour on the torus, in unit lengths.
 ///
 /// Taken from the points as given: points 1e-300 apart are that far apart, coincident ones 0. A
@@ -63,6 +65,33 @@ impl Spacing {
         Self { nearest }
     }
 
+    /// The spacing of triangulated points, in the order of their indices. O(n), and several times
+    /// faster than from the points alone.
+    ///
+    /// Taken from their places on the triangulation's coordinate grid: within 2⁻⁵⁰ of the distances
+    /// of the points as given.
+    pub fn of(triangulation: &Triangulation) -> Self {
+        let mut nearest = vec![f64::INFINITY; triangulation.index_bound()];
+        for face in triangulation.faces() {
+            for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+                let squared = face.corners[i].distance_squared(face.corners[j]);
+                for vertex in [face.vertices[i], face.vertices[j]] {
+                    nearest[vertex] = squared.min(nearest[vertex]);
+                }
+            }
+        }
+        for index in triangulation.shared_places() {
+            nearest[index] = 0.0;
+        }
+        if triangulation.point_count() < nearest.len() {
+            nearest.retain(|squared| squared.is_finite());
+        }
+        for squared in &mut nearest {
+            *squared = squared.sqrt();
+        }
+        Self { nearest }
+    }
+
     /// `d_min`: the smallest distance between two points.
     pub fn min(&self) -> f64 {
         self.nearest.iter().copied().fold(f64::INFINITY, f64::min)
@@ -74,7 +103,7 @@ impl Spacing {
         self.nearest.iter().sum::<f64>() / self.nearest.len() as f64
     }
 
-    /// For each point, by index, the distance to its nearest neighbour.
+    /// For each point, in the order of indices, the distance to its nearest neighbour.
     pub fn nearest_distances(&self) -> &[f64] {
         &self.nearest
     }

@@ -26,6 +26,7 @@ mod best_candidate;
 mod bucket_grid;
 mod digits;
 mod error;
+mod farthest_point_optimization;
 mod farthest_point_strategy;
 mod farthest_points;
 mod halton;
@@ -49,6 +50,7 @@ mod stochastic;
 
 pub use best_candidate::BestCandidate;
 pub use error::SampleError;
+pub use farthest_point_optimization::{FarthestPointOptimization, FpoStart, FpoUntil, FpoVariant};
 pub use farthest_point_strategy::FarthestPointStrategy;
 pub use halton::Halton;
 pub use hexagonal::Hexagonal;

@@ -6,8 +6,8 @@ use crate::names::nearest_name;
 use crate::particles::{electrostatic, kernel_density};
 use crate::poisson_disk::{dart_throwing, maximal};
 use crate::{
-    Method, best_candidate, farthest_point_strategy, halton, hexagonal, jittered, lloyd, net, r2,
-    regular, sobol, stochastic,
+    Method, best_candidate, farthest_point_optimization, farthest_point_strategy, halton,
+    hexagonal, jittered, lloyd, net, r2, regular, sobol, stochastic,
 };
 
 /// Every method, in the order of the thesis's appendix B, then those that it doesn't show.
@@ -27,6 +27,7 @@ pub const METHODS: &[&Method] = &[
     &net::METHOD,
     &regular::METHOD,
     &hexagonal::METHOD,
+    &farthest_point_optimization::METHOD,
     &halton::METHOD,
     &sobol::METHOD,
     &r2::METHOD,

@@ -10,14 +10,15 @@ use crate::predicates::snap;
 /// Between rounds of insertion the number of points grows by this factor.
 const ROUND_FACTOR: usize = 4;
 
-/// The mesh of these points, numbered by their place in the list, and who shares whose vertex.
+/// The mesh of these points, the point at place i of the list called by `number(i)`, and who shares
+/// whose vertex.
 ///
 /// Inserts along a Hilbert curve, so that each search starts next to its goal, in rounds that take
 /// every 4ᵏth point of the curve, so that no round leaves wide gaps to fill with slivers (a biased
 /// insertion order, Amenta, Choi and Rote 2003, with regular samples for random ones). While the
 /// mesh grows its vertices are numbered along the curve: neighbours in the mesh are neighbours in
 /// memory.
-pub fn build(points: &[DVec2]) -> (Mesh, Coincidences) {
+pub fn build(points: &[DVec2], number: impl Fn(u32) -> u32) -> (Mesh, Coincidences) {
     let mut curve: Vec<(u64, u32)> =
         points.iter().zip(0..).map(|(&p, i)| (hilbert::index(snap(p)), i)).collect();
     curve.sort_unstable();
@@ -30,9 +31,9 @@ pub fn build(points: &[DVec2]) -> (Mesh, Coincidences) {
             shared.push((vertex, rank as u32));
         }
     }
-    let mut number: Vec<u32> = curve.into_iter().map(|(_, i)| i).collect();
-    let coincidences = name_coincident(&mut number, shared);
-    mesh.renumber(&number);
+    let mut numbers: Vec<u32> = curve.into_iter().map(|(_, i)| number(i)).collect();
+    let coincidences = name_coincident(&mut numbers, shared);
+    mesh.renumber(&numbers);
     mesh.changed.clear();
     (mesh, coincidences)
 }
@@ -80,7 +81,8 @@ impl Mesh {
                 face.set_vertex(corner, number[face.vertex(corner) as usize]);
             }
         }
-        let renumbered = vec![Vertex::ABSENT; number.len()];
+        let bound = number.iter().max().map_or(0, |&last| last as usize + 1);
+        let renumbered = vec![Vertex::ABSENT; bound];
         let vertices = std::mem::replace(&mut self.vertices, renumbered);
         for (vertex, &new) in vertices.into_iter().zip(number) {
             if vertex.is_present() {

@@ -35,6 +35,12 @@ impl Coincidences {
         }
     }
 
+    /// Whether several points lie where `vertex` is.
+    #[inline]
+    pub fn is_shared(&self, vertex: u32) -> bool {
+        self.membership.get(vertex as usize).is_some_and(|&membership| membership != ALONE)
+    }
+
     /// The points at the place of `vertex` when there are several, itself first; or none.
     #[cfg(test)]
     pub fn members(&self, vertex: u32) -> &[u32] {
@@ -42,6 +48,11 @@ impl Coincidences {
             None | Some(&ALONE) => &[],
             Some(&(group, _)) => &self.groups[group as usize],
         }
+    }
+
+    /// The points that share a place with others.
+    pub fn shared(&self) -> impl Iterator<Item = u32> {
+        self.groups.iter().flatten().copied()
     }
 
     /// More than the number of any point that shares a vertex.

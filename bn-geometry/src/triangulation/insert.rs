@@ -188,5 +188,5 @@ impl Mesh {
 #[inline]
 fn sees_across(from: DVec2, to: DVec2, apex: DVec2) -> bool {
     let inside = is_inside(Angle::between(from, to), Angle::between(to - apex, from - apex));
-    if inside.is_sure { inside.is_positive } else { in_circle_exactly(to, from, apex) }
+    inside.or_else(|| in_circle_exactly(to, from, apex))
 }

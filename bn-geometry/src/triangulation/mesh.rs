@@ -14,6 +14,8 @@ pub struct Scratch {
     pub(super) star: StarPolygon,
     pub(super) borders: Vec<Border>,
     pub(super) chains: Vec<Chain>,
+    /// Parts of a polygon by their first and last corners.
+    pub(super) spans: Vec<(usize, usize)>,
     pub(super) suspects: Vec<Edge>,
 }
 

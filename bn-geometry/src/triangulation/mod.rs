@@ -9,13 +9,15 @@ mod iter;
 mod locate;
 mod mesh;
 mod polygon;
+mod relocate;
 mod remove;
 mod touching;
+mod vacancy;
 
 use bn_core::{DVec2, PointSet, torus};
 
 use self::coincident::{Coincidences, Departure};
-use self::face::Face as FaceRecord;
+use self::face::{Face as FaceRecord, NONE};
 use self::locate::{Hints, Place};
 use self::mesh::{Mesh, Scratch};
 use crate::circle::{Circle, circumcircle, circumradius_squared};
@@ -23,6 +25,7 @@ use crate::predicates::snap;
 
 pub use self::face::FaceId;
 pub use self::iter::{Face, Faces, Neighbors, Star};
+pub use self::vacancy::Vacancy;
 
 /// The Delaunay triangulation of points on the unit torus.
 ///
@@ -64,7 +67,7 @@ pub enum Location {
 impl Triangulation {
     /// The triangulation of all points of a set, indexed as there. O(n log n).
     pub fn new(set: &PointSet) -> Self {
-        let (mesh, coincidences) = build::build(set.points());
+        let (mesh, coincidences) = build::build(set.points(), |i| i);
         let mut hints = Hints::default();
         hints.rebuild(&mesh);
         Self { mesh, coincidences, hints, scratch: Scratch::default() }
@@ -104,6 +107,19 @@ impl Triangulation {
         self.vertex(index) as usize
     }
 
+    /// Whether other points lie at the place of point `index`.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn shares_place(&self, index: usize) -> bool {
+        self.coincidences.is_shared(self.vertex(index))
+    }
+
+    /// The points whose place is that of other points as well, in no particular order.
+    pub fn shared_places(&self) -> impl Iterator<Item = usize> {
+        self.coincidences.shared().map(|index| index as usize)
+    }
+
     /// The place of point `index`, on the coordinate grid.
     ///
     /// # Panics
@@ -138,6 +154,7 @@ impl Triangulation {
         assert!(index < PointSet::MAX_POINTS, "index {index} is not below 2²⁹");
         assert!(!self.contains(index), "point {index} is in the triangulation already");
         let (point, p) = (index as u32, snap(p));
+        self.scratch.star.center = NONE;
         if let Some(vertex) = self.mesh.insert(point, p, start, &mut self.scratch) {
             self.mesh.changed.clear();
             self.coincidences.join(point, vertex);
@@ -150,12 +167,13 @@ impl Triangulation {
 
     /// Takes out point `index`. O(d²) for a point with d neighbours, d being 6 in the mean. Where a
     /// point is its own neighbour, which takes an empty circle of radius ½ or more, everything is
-    /// built anew: O(n²) at worst, as for points on a line that are not numbered along it.
+    /// built anew, in O(n log n).
     ///
     /// # Panics
     /// If there is no such point.
     pub fn remove(&mut self, index: usize) {
         let vertex = self.vertex(index);
+        self.scratch.star.center = NONE;
         match self.coincidences.leave(index as u32) {
             Departure::Vertex => self.mesh.remove(vertex, &mut self.scratch),
             Departure::Duplicate => self.mesh.changed.clear(),

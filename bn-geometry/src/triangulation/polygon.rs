@@ -2,13 +2,15 @@
 
 use bn_core::DVec2;
 
-use super::face::{Edge, Frame, Shift, next, previous};
+use super::face::{Edge, Frame, NONE, Shift, next, previous};
 use super::mesh::Mesh;
 
 /// A polygon of mesh edges with no vertex inside but for its centre, from which all of it can be
 /// seen.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct StarPolygon {
+    /// The vertex in the middle while the polygon is that of the mesh as it is.
+    pub center: u32,
     /// Its corners counter-clockwise.
     pub corners: Vec<StarCorner>,
     /// The faces inside, whose records the new ones take.
@@ -29,8 +31,15 @@ pub struct StarCorner {
     pub inner: Edge,
 }
 
+impl Default for StarPolygon {
+    fn default() -> Self {
+        Self { center: NONE, corners: Vec::new(), faces: Vec::new(), is_whole: true }
+    }
+}
+
 impl StarPolygon {
     pub fn clear(&mut self) {
+        self.center = NONE;
         self.corners.clear();
         self.faces.clear();
         self.is_whole = true;
@@ -66,6 +75,7 @@ impl Mesh {
             star.faces.push(e.face());
             e = face.twin(previous(c));
             if e == first {
+                star.center = vertex;
                 return true;
             }
         }

@@ -1,5 +1,8 @@
 //! Removal: triangulate the star polygon that a vertex leaves behind.
 
+use bn_core::DVec2;
+
+use super::build::build;
 use super::face::{Edge, Face, FaceId, Frame};
 use super::mesh::{Mesh, Scratch};
 use super::polygon::{StarCorner, StarPolygon};
@@ -16,8 +19,8 @@ pub struct Chain {
 }
 
 impl Mesh {
-    /// Takes out `vertex`, which the mesh has. O(d²) for a vertex of degree d; O(n²) at worst where
-    /// the vertex is its own neighbour, which needs an empty circle of radius ½.
+    /// Takes out `vertex`, which the mesh has. O(d²) for a vertex of degree d; O(n log n) where the
+    /// vertex is its own neighbour, which needs an empty circle of radius ½.
     pub fn remove(&mut self, vertex: u32, scratch: &mut Scratch) {
         self.changed.clear();
         if self.gather_star(vertex, &mut scratch.star) {
@@ -25,7 +28,7 @@ impl Mesh {
             self.fill_star(vertex, &mut scratch.star, &mut scratch.chains);
             self.set_outgoing(vertex, Edge::NONE);
         } else {
-            self.rebuild_without(vertex, scratch);
+            self.rebuild_without(vertex);
         }
     }
 
@@ -115,15 +118,12 @@ impl Mesh {
 
     /// Builds the mesh of all other vertices from nothing.
     #[cold]
-    fn rebuild_without(&mut self, vertex: u32, scratch: &mut Scratch) {
+    fn rebuild_without(&mut self, vertex: u32) {
         let others: Vec<u32> = self.vertex_numbers().filter(|&v| v != vertex).collect();
+        let places: Vec<DVec2> = others.iter().map(|&v| self.position(v)).collect();
         let former_faces = self.faces.len() as u32;
-        self.clear();
-        for v in others {
-            let existing = self.insert(v, self.position(v), self.last, scratch);
-            debug_assert_eq!(existing, None, "vertices are distinct");
-        }
-        self.changed.clear();
+        let (mesh, _) = build(&places, |i| others[i as usize]);
+        *self = mesh;
         self.changed.extend((0..former_faces).map(FaceId));
     }
 }
@@ -134,7 +134,7 @@ impl Mesh {
 /// no other, that is, which sees them at the widest angle: the corners of the polygon suffice,
 /// because its sides stay Delaunay.
 #[inline]
-fn delaunay_apex(corners: &[StarCorner], first: usize, last: usize) -> usize {
+pub fn delaunay_apex(corners: &[StarCorner], first: usize, last: usize) -> usize {
     if last == first + 2 {
         return first + 1;
     }

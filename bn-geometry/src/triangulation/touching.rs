@@ -64,7 +64,7 @@ impl Mesh {
     /// Ends because each flip lowers the surface that lifts the points to their (perturbed)
     /// squared norm, and correct because a locally Delaunay triangulation of a flat torus is
     /// globally so (Bobenko and Springborn 2007).
-    fn restore_delaunay(&mut self, suspects: &mut Vec<Edge>) {
+    pub(super) fn restore_delaunay(&mut self, suspects: &mut Vec<Edge>) {
         while let Some(e) = suspects.pop() {
             if self.is_illegal(e) {
                 let t = self.twin(e);
