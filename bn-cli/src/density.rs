@@ -5,9 +5,9 @@ use std::io::BufReader;
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use bn_core::DensityFunction;
+use bn_core::{DensityFunction, DensityFunctionError};
 use bn_render::{Channels, Image};
-use exmex::Express;
+use exmex::{BinOp, Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
 
 use crate::{Failure, Outcome};
 
@@ -59,8 +59,55 @@ fn from_image(
             values.push((1.0 - luminance).clamp(0.0, 1.0));
         }
     }
-    DensityFunction::from_raster(width, height, values)
-        .context("the image is white all over: points go where it is dark")
+    DensityFunction::from_raster(width, height, values).map_err(|error| match error {
+        DensityFunctionError::Sum { .. } => {
+            anyhow!("the image is white all over: points go where it is dark")
+        }
+        other => anyhow!(other),
+    })
+}
+
+/// The usual operators and functions, those that platforms compute differently by libm: formulas
+/// decide where points lie.
+#[derive(Clone, Debug)]
+struct Portable;
+
+impl MakeOperators<f64> for Portable {
+    fn make<'a>() -> Vec<Operator<'a, f64>> {
+        type Function = fn(f64) -> f64;
+        let functions: [(&str, Function); 19] = [
+            ("sin", libm::sin),
+            ("cos", libm::cos),
+            ("tan", libm::tan),
+            ("asin", libm::asin),
+            ("acos", libm::acos),
+            ("atan", libm::atan),
+            ("sinh", libm::sinh),
+            ("cosh", libm::cosh),
+            ("tanh", libm::tanh),
+            ("asinh", libm::asinh),
+            ("acosh", libm::acosh),
+            ("atanh", libm::atanh),
+            ("exp", libm::exp),
+            ("cbrt", libm::cbrt),
+            ("ln", libm::log),
+            ("log", libm::log),
+            ("log2", libm::log2),
+            ("log10", libm::log10),
+            ("round", libm::round),
+        ];
+        let power = BinOp { apply: libm::pow, prio: 4, is_commutative: false };
+        let angle = BinOp { apply: libm::atan2, prio: 0, is_commutative: false };
+        let replaced = |name: &str| {
+            ["^", "atan2"].contains(&name) || functions.iter().any(|(ours, _)| *ours == name)
+        };
+        let mut operators = FloatOpsFactory::<f64>::make();
+        operators.retain(|operator| !replaced(operator.repr()));
+        operators.push(Operator::make_bin("^", power));
+        operators.push(Operator::make_bin("atan2", angle));
+        operators.extend(functions.map(|(name, apply)| Operator::make_unary(name, apply)));
+        operators
+    }
 }
 
 fn from_formula(text: &str) -> anyhow::Result<DensityFunction> {
@@ -68,7 +115,8 @@ fn from_formula(text: &str) -> anyhow::Result<DensityFunction> {
     if text.len() > MAX_FORMULA {
         return Err(anyhow!("longer than {MAX_FORMULA} characters; {mend}"));
     }
-    let formula = exmex::parse::<f64>(text).map_err(|error| anyhow!("{error}; {mend}"))?;
+    let formula: FlatEx<f64, Portable> =
+        FlatEx::parse(text).map_err(|error| anyhow!("{error}; {mend}"))?;
     let names = formula.var_names();
     if let Some(name) = names.iter().find(|name| *name != "x" && *name != "y") {
         return Err(anyhow!("no variable is called {name}; {mend}"));
@@ -94,6 +142,10 @@ mod tests {
         assert!((ramp.at(DVec2::new(0.75, 0.1)) - 1.5).abs() < 2e-3);
         let both = density("1 + cos(2*PI*y)*x").expect("valid");
         assert!(both.at(DVec2::new(0.99, 0.01)) > both.at(DVec2::new(0.99, 0.5)));
+        let gaussian = density("exp(-8*((x-0.5)^2+(y-0.5)^2))").expect("valid");
+        let ratio = gaussian.at(DVec2::splat(0.5)) / gaussian.at(DVec2::new(1e-3, 0.5));
+        // Pixels of 1/1024 move the places by half of that.
+        assert!((ratio / libm::exp(2.0) - 1.0).abs() < 0.02, "{ratio}");
         assert_eq!(density("2").expect("constant").max(), 1.0);
     }
 

@@ -11,7 +11,7 @@ use crate::{Failure, Outcome};
 
 /// The sets of a file, or of standard input for `-`.
 ///
-/// Without `format` a file's extension decides; on standard input the first bytes do.
+/// Without `format` a file's extension decides; on standard input the contents do.
 ///
 /// # Errors
 /// A file that is bad or absent is bad input; a disk that fails is a failure.
@@ -34,10 +34,12 @@ fn read_stdin(format: Option<Format>, options: ReadOptions) -> Outcome<Ensemble>
     io::read(format, "standard input", &bytes[..], options).map_err(failure)
 }
 
-/// The format that bytes without a name are most likely in. `.rps` has no mark of its own and must
+/// The format that bytes without a name are most likely in: by the mark of `.npy`, `.json` or `.eps`,
+/// lines with `#` anywhere, a comma in the first line. `.rps` has no mark of its own and must
 /// be named.
 fn recognize(bytes: &[u8]) -> Format {
     let text = bytes.trim_ascii_start();
+    let first = text.split(|&byte| byte == b'\n').next().unwrap_or_default();
     if bytes.starts_with(b"\x93NUMPY") {
         Format::Npy
     } else if text.starts_with(b"{") {
@@ -46,7 +48,7 @@ fn recognize(bytes: &[u8]) -> Format {
         Format::Eps
     } else if text.contains(&b'#') {
         Format::Dat
-    } else if text.contains(&b',') {
+    } else if first.contains(&b',') {
         Format::Csv
     } else {
         Format::Txt
@@ -67,6 +69,12 @@ fn failure(error: ReadError) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_count_says_that_commas_are_no_csv() {
+        assert_eq!(recognize(b"2\n0.1,0.2\n0.3,0.4\n"), Format::Txt);
+        assert_eq!(recognize(b"0.1,0.2\n0.3,0.4\n"), Format::Csv);
+    }
 
     #[test]
     fn formats_are_recognized_by_their_first_bytes() {

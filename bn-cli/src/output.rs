@@ -34,15 +34,31 @@ fn write_renamed(path: &Path, write: impl FnOnce(&mut dyn Write) -> Outcome) -> 
     if fs::metadata(path).is_ok_and(|file| !file.is_file() && !file.is_dir()) {
         return fill(File::options().write(true).open(path)?, write);
     }
-    // A link stays a link: the file that it leads to is what gets replaced.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let target = behind_links(path);
+    if fs::metadata(&target).is_ok_and(|file| file.permissions().readonly()) {
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only").into());
+    }
     let directory = match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    let temporary = Unfinished::beside(&target, directory)?;
+    let temporary = Unfinished::within(directory)?;
     fill(temporary.file.as_file(), write)?;
     Ok(temporary.finish(&target)?)
+}
+
+/// What a name stands for: a link stays a link, and the file that it leads to, there or not yet, is
+/// what gets replaced.
+fn behind_links(path: &Path) -> PathBuf {
+    /// As many as systems follow; a ring of links ends in the error of the last.
+    const MOST_LINKS: u32 = 40;
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&target) else { break };
+        // A relative link starts from the folder that it is in.
+        target = target.parent().map_or_else(|| next.clone(), |folder| folder.join(&next));
+    }
+    target
 }
 
 /// Runs `write` on a buffered `file` and flushes it down to the disk's acceptance.
@@ -84,11 +100,10 @@ struct Unfinished {
 }
 
 impl Unfinished {
-    fn beside(target: &Path, directory: &Path) -> io::Result<Self> {
-        let mut prefix = std::ffi::OsString::from(".");
-        prefix.push(target.file_name().unwrap_or_default());
+    fn within(directory: &Path) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix).suffix(".part");
+        // Short, since the name itself may be as long as names can be.
+        builder.prefix(".bn-").suffix(".part");
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
@@ -102,14 +117,19 @@ impl Unfinished {
     }
 
     fn finish(self, target: &Path) -> io::Result<()> {
-        let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
-        unfinished.retain(|path| path != self.file.path());
         // An older file keeps its permissions.
         if let Ok(old) = fs::metadata(target) {
             self.file.as_file().set_permissions(old.permissions())?;
         }
-        self.file.persist(target).map_err(|error| error.error)?;
-        Ok(())
+        // Renamed, the guard finds nothing left to remove.
+        fs::rename(self.file.path(), target)
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+        unfinished.retain(|path| path != self.file.path());
     }
 }
 
@@ -162,5 +182,27 @@ mod tests {
         write_file(&link, |w| Ok(w.write_all(b"new")?)).expect("writable");
         assert_eq!(fs::read(&file).expect("the file"), b"new");
         assert!(fs::symlink_metadata(&link).expect("the link").is_symlink());
+        // A link to what isn't there yet, in a folder of its own.
+        let (dangling, later) = (folder.path().join("dangling"), folder.path().join("later"));
+        std::os::unix::fs::symlink("later", &dangling).expect("linkable");
+        write_file(&dangling, |w| Ok(w.write_all(b"new")?)).expect("writable");
+        assert!(fs::symlink_metadata(&dangling).expect("the link").is_symlink());
+        assert_eq!(fs::read(&later).expect("the file"), b"new");
+    }
+
+    #[test]
+    fn read_only_files_are_kept_and_long_names_written() {
+        let folder = folder();
+        let long = folder.path().join("n".repeat(250));
+        write_file(&long, |w| Ok(w.write_all(b"x")?)).expect("a name of 250 bytes is allowed");
+        let path = folder.path().join("points.txt");
+        fs::write(&path, "old").expect("writable");
+        let mut permissions = fs::metadata(&path).expect("there").permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&path, permissions).expect("ours");
+        let error = write_file(&path, |w| Ok(w.write_all(b"new")?)).expect_err("read-only");
+        assert!(error.to_string().contains("read-only"), "{error}");
+        assert_eq!(fs::read(&path).expect("there"), b"old");
+        assert!(UNFINISHED.lock().expect("free").iter().all(|p| !p.starts_with(folder.path())));
     }
 }

@@ -21,11 +21,7 @@ pub fn write(path: &Path, format: Option<Format>, sets: &[PointSet]) -> Outcome 
     let format = choose(path, format, sets.len())?;
     if has_place(path) || (sets.len() > 1 && !format.holds_ensembles()) {
         if path.as_os_str() == "-" {
-            return Err(Failure::misuse(format!(
-                "the format {} holds one set; write {} sets to files, or as dat, npy or json",
-                format.name(),
-                sets.len()
-            )));
+            return Err(holds_one(format, sets.len()));
         }
         for (index, set) in sets.iter().enumerate() {
             write_one(&numbered(path, index), format, std::slice::from_ref(set))?;
@@ -35,12 +31,36 @@ pub fn write(path: &Path, format: Option<Format>, sets: &[PointSet]) -> Outcome 
     write_one(path, format, sets)
 }
 
-/// Refuses a name whose format can't be told, before any work is done.
+/// Refuses what can't be written, before any work is done: a name whose format can't be told, a
+/// folder that isn't there, several sets where one fits.
 ///
 /// # Errors
-/// If the name tells no format and none is given.
-pub fn check(path: &Path, format: Option<Format>) -> Outcome {
-    choose(path, format, 1).map(drop)
+/// If [`write`] of so many sets would fail for any of these.
+pub fn check(path: &Path, format: Option<Format>, sets: usize) -> Outcome {
+    let format = choose(path, format, sets)?;
+    if path.as_os_str() == "-" {
+        return if sets > 1 && !format.holds_ensembles() {
+            Err(holds_one(format, sets))
+        } else {
+            Ok(())
+        };
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder {
+        Some(folder) if !folder.is_dir() => Err(Failure::failed(anyhow!(
+            "cannot write {}: there is no folder {}",
+            path.display(),
+            folder.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+fn holds_one(format: Format, sets: usize) -> Failure {
+    Failure::misuse(format!(
+        "the format {} holds one set; write {sets} sets to files, or as dat, npy or json",
+        format.name()
+    ))
 }
 
 fn write_one(path: &Path, format: Format, sets: &[PointSet]) -> Outcome {
@@ -100,9 +120,21 @@ mod tests {
     #[test]
     fn unknown_extensions_are_refused() {
         assert_eq!(
-            check(Path::new("points.xyz"), None).expect_err("unknown").code(),
+            check(Path::new("points.xyz"), None, 1).expect_err("unknown").code(),
             Failure::USAGE
         );
-        assert!(check(Path::new("points.xyz"), Some(Format::Txt)).is_ok());
+        assert!(check(Path::new("points.xyz"), Some(Format::Txt), 1).is_ok());
+    }
+
+    #[test]
+    fn what_could_not_be_written_is_refused_beforehand() {
+        let code = |path: &str, format, sets| {
+            check(Path::new(path), format, sets).err().map(|failure| failure.code())
+        };
+        assert_eq!(code("-", Some(Format::Rps), 3), Some(Failure::USAGE));
+        assert_eq!(code("-", Some(Format::Rps), 1), None);
+        assert_eq!(code("-", None, 3), None);
+        assert_eq!(code("no/such/folder/a.txt", None, 1), Some(Failure::FAILED));
+        assert_eq!(code("a.rps", None, 3), None);
     }
 }

@@ -5,11 +5,36 @@
 /// What the samples stand for (values at a point, means over a bin whose lower edge or centre is
 /// the abscissa) is said where a curve is made.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Samples"))]
 pub struct Curve {
     start: f64,
     step: f64,
     values: Vec<f64>,
+}
+
+/// A curve as it is read, before it is checked; null stands for NaN.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Samples {
+    start: f64,
+    step: f64,
+    values: Vec<Option<f64>>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Samples> for Curve {
+    type Error = &'static str;
+
+    fn try_from(samples: Samples) -> Result<Self, Self::Error> {
+        let Samples { start, step, values } = samples;
+        let values: Vec<f64> = values.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect();
+        let end = start + values.len() as f64 * step;
+        if values.is_empty() || !(step > 0.0 && start.is_finite() && end.is_finite()) {
+            return Err("a curve needs values at finite, increasing abscissae");
+        }
+        Ok(Self::new(start, step, values))
+    }
 }
 
 impl Curve {

@@ -18,6 +18,8 @@ use thiserror::Error;
 /// # Ok::<(), bn_core::DensityFunctionError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Raster", into = "Raster"))]
 pub struct DensityFunction {
     width: usize,
     height: usize,
@@ -28,6 +30,31 @@ pub struct DensityFunction {
     /// The mass of the rows before each row, `height + 1` numbers, in units of a pixel.
     before_rows: Vec<f64>,
     max: f64,
+}
+
+/// What of a density function is stored.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Raster {
+    width: usize,
+    height: usize,
+    values: Vec<f64>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Raster> for DensityFunction {
+    type Error = DensityFunctionError;
+
+    fn try_from(raster: Raster) -> Result<Self, Self::Error> {
+        Self::from_raster(raster.width, raster.height, raster.values)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<DensityFunction> for Raster {
+    fn from(density: DensityFunction) -> Self {
+        Self { width: density.width, height: density.height, values: density.values }
+    }
 }
 
 /// Why a raster isn't a density function.
@@ -198,11 +225,22 @@ impl DensityFunction {
         let (row, y) = invert(&self.before_rows, u.y);
         let start = row * (self.width + 1);
         let (column, x) = invert(&self.within_rows[start..=start + self.width], u.x);
-        let inside = |position: f64, count: usize| {
-            (position / count as f64).min(1.0_f64.next_down()).max(0.0)
-        };
-        DVec2::new(inside(column as f64 + x, self.width), inside(row as f64 + y, self.height))
+        DVec2::new(inside(column, x, self.width), inside(row, y, self.height))
     }
+}
+
+/// The place `part` (0 to 1) of the way through pixel `index` of `count`, moved by roundings only as
+/// far as [`DensityFunction::at`] finds it in that pixel.
+fn inside(index: usize, part: f64, count: usize) -> f64 {
+    let pixel = |x: f64| (x * count as f64) as usize;
+    let mut x = (index as f64 + part) / count as f64;
+    while x >= 1.0 || pixel(x) > index {
+        x = x.next_down();
+    }
+    while pixel(x) < index {
+        x = x.next_up();
+    }
+    x
 }
 
 /// Where a cumulative sum that starts at 0 reaches the part `u` of its last: the interval, always
@@ -248,6 +286,7 @@ mod tests {
         for u in [0.0, 0.3, 0.5, 1.0_f64.next_down()] {
             for v in [0.0, 0.7, 1.0_f64.next_down()] {
                 let p = density.place(DVec2::new(u, v));
+                assert_eq!(density.at(p), 6.0, "{p}");
                 assert!((0.333..0.667).contains(&p.x) && (0.5..1.0).contains(&p.y), "{p}");
             }
         }

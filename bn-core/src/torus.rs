@@ -10,8 +10,8 @@ pub const DIAMETER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// The representative of `x` modulo 1 in [0, 1).
 ///
-/// Exact wherever the result is representable; a negative number closer to 0 than half an ulp of 1
-/// lies nearest to 1, that is, to 0. NaN and infinities give NaN.
+/// Exact wherever the result is representable; a negative number closer to 0 than 2⁻⁵⁴ lies nearest
+/// to 1, that is, to 0. NaN and infinities give NaN.
 #[inline]
 pub fn wrap(x: f64) -> f64 {
     let fraction = x - x.floor();

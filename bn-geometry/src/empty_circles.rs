@@ -71,9 +71,10 @@ impl EmptyCircles {
         (self.radius_squared.get(index) > 0.0).then(|| FaceId::new(index))
     }
 
-    /// The squared radius of a face's circle; 0 if there is no such face.
+    /// The squared radius of a face's circle; 0 if there was no such face at the last update.
     #[inline]
     pub fn radius_squared(&self, face: FaceId) -> f64 {
-        self.radius_squared.get(face.index())
+        let index = face.index();
+        if index < self.radius_squared.len() { self.radius_squared.get(index) } else { 0.0 }
     }
 }

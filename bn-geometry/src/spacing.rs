@@ -24,6 +24,7 @@ use crate::Triangulation;
 /// # Ok::<(), bn_core::PointSetError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Spacing {
     nearest: Vec<f64>,
 }

@@ -83,6 +83,7 @@ impl Sampler for Lloyd {
         let mut points = Stochastic::default().sample(n, seed, observer)?.points;
         let mut cells = Vec::new();
         let (mut done, mut farthest) = (0, f64::INFINITY);
+        observer.iterated(0, &|| points.points().to_vec());
         while done < self.iterations && farthest > self.tolerance.value() {
             let moved = [("moved", farthest)];
             let progress = Progress::new("relaxing", done.into(), Some(self.iterations.into()));
@@ -91,6 +92,7 @@ impl Sampler for Lloyd {
             (points, step) = relax(points, &mut cells);
             farthest = density.normalize_distance(step).value();
             done += 1;
+            observer.iterated(done.into(), &|| points.points().to_vec());
         }
         let mut report = Report::new().with("iterations", u64::from(done));
         if done > 0 {

@@ -11,7 +11,8 @@ const POINTS: usize = 4096;
 /// The pair correlation g(r) of displacements r = (rx, ry) in a square window (thesis section 5.1
 /// and figure 5.1), mean over the sets: how many times as many ordered pairs have that displacement
 /// as independent points would have on the average, without the peak at 0 of each point with
-/// itself. Symmetric under r → −r.
+/// itself. Symmetric under r → −r but for displacements that lie exactly on a cell's bounds, as a
+/// lattice's may: each belongs to one cell.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Autocorrelation {
@@ -27,7 +28,8 @@ impl Autocorrelation {
     /// g over [−`half_width`, `half_width`)² (unit lengths) in `side` × `side` cells. A cell's value
     /// that c ordered pairs make up has a relative error of about √(2/c): each comes with its reverse.
     ///
-    /// Cost O(n·(1 + n·`half_width`²)) a set, O(side²) memory a thread.
+    /// Cost O(n·(1 + n·`half_width`²)) a set of points that are spread evenly and O(n²) if they crowd
+    /// in one place; O(side²) memory a thread.
     ///
     /// # Panics
     /// If there is no set, `half_width` is not in (0, ½], or `side` is 0 or above
@@ -89,7 +91,7 @@ impl Window {
         let grid = CellGrid::new(set);
         // At most 64 pieces, each of which has counts of its own.
         let piece = POINTS.max(set.len().div_ceil(64));
-        let pieces: Vec<Vec<u32>> = (0..set.len())
+        let pieces: Vec<Vec<u64>> = (0..set.len())
             .into_par_iter()
             .step_by(piece)
             .map(|first| self.count_piece(set, &grid, first..(first + piece).min(set.len())))
@@ -97,14 +99,14 @@ impl Window {
         let mut total = vec![0_u64; self.side * self.side];
         for piece in &pieces {
             for (total, &count) in total.iter_mut().zip(piece) {
-                *total += u64::from(count);
+                *total += count;
             }
         }
         total
     }
 
-    fn count_piece(&self, set: &PointSet, grid: &CellGrid, piece: Range<usize>) -> Vec<u32> {
-        let mut counts = vec![0_u32; self.side * self.side];
+    fn count_piece(&self, set: &PointSet, grid: &CellGrid, piece: Range<usize>) -> Vec<u64> {
+        let mut counts = vec![0_u64; self.side * self.side];
         let radius = self.half_width * std::f64::consts::SQRT_2;
         for from in piece {
             let p = set.points()[from];

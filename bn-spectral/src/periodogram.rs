@@ -16,7 +16,8 @@ const BLOCK_VALUES: usize = 1 << 25;
 /// *Error*: `tolerance` is the relative l2 error ε of the amplitudes S(k) = Σⱼ exp(−2πi k·xⱼ), whose
 /// rms is about √n. Spread over all modes this is an error of about ε in S/√n, so a power comes out
 /// with an error of about 2ε√P + ε²: with the default ε = 1e-6 a power of 1 is good to 2e-6 and a
-/// mean power of 1e-12 can still be told from 0.
+/// mean power of 1e-12 can still be told from 0. On lattices, where the errors of all points agree,
+/// ε is up to three times `tolerance` and the power of a mode up to n·ε² off.
 ///
 /// *Cost*: one NUFFT a set and block of columns, O(n + K² log K) in all for modes |kx|, |ky| ≤ K;
 /// memory O(n + K²) and never above O(n) plus about 800 MiB, whatever K.

@@ -162,7 +162,9 @@ impl RadialPower {
 
     /// Anisotropy in dB at the rings' centres: 10·log₁₀ of the variance of the power within the
     /// ring over its squared mean (Ulichney 1987). For disordered points of m sets about
-    /// −10·log₁₀ m. NaN where the mean is 0 or the ring has only two modes; `None` without rings.
+    /// −10·log₁₀ m. NaN where the mean is 0 or the ring has only two modes, −∞ where all powers are
+    /// equal; `None` without rings. Where the exact power is 0, as between a lattice's peaks, the
+    /// figure is that of the transform's errors.
     pub fn anisotropy_db(&self) -> Option<Curve> {
         let curve = self.curve()?;
         let decibels = (0..self.means.len()).map(|i| {

@@ -59,12 +59,18 @@ pub struct LatticeRing {
 /// The rings of the square lattice of density `n` with 0 < |k| ≤ `highest`: √n·√(a² + b²).
 ///
 /// O((highest/√n)²) time and, for the highest number of rings, memory.
+///
+/// # Panics
+/// If (highest/√n)² is 10⁷ or more.
 pub fn square_lattice_rings(n: f64, highest: f64) -> Vec<LatticeRing> {
     rings(n.sqrt(), highest, |a, b| a * a + b * b)
 }
 
 /// The rings of the hexagonal lattice of density `n` with 0 < |k| ≤ `highest`:
 /// √(2n/√3)·√(a² + ab + b²). The torus admits such a lattice only nearly.
+///
+/// # Panics
+/// As [`square_lattice_rings`], for the lattice's own unit.
 pub fn hexagonal_lattice_rings(n: f64, highest: f64) -> Vec<LatticeRing> {
     rings((2.0 * n / 3.0_f64.sqrt()).sqrt(), highest, |a, b| a * a + a * b + b * b)
 }
@@ -75,7 +81,7 @@ fn rings(unit: f64, highest: f64, form: impl Fn(i64, i64) -> i64) -> Vec<Lattice
     if !(unit > 0.0 && largest >= 1.0) {
         return Vec::new();
     }
-    assert!(largest < 1e9, "{largest} lattice rings are too many");
+    assert!(largest < 1e7, "{largest} lattice rings are too many");
     let reach = (largest / 0.75).sqrt() as i64 + 1;
     let mut modes = vec![0; largest as usize + 1];
     for (a, b) in (-reach..=reach).flat_map(|a| (-reach..=reach).map(move |b| (a, b))) {

@@ -24,9 +24,23 @@ pub struct Direct {
 
 impl Direct {
     pub(super) fn of(sets: &[PointSet]) -> Self {
-        let limit = range_of_interest(sets);
+        let frequency =
+            |relative: f64| (relative * sets[0].density().grid_nyquist()).ceil() as usize + 1;
+        let mut look = FIRST_LOOK;
+        while look < LAST_LOOK {
+            let near = Self::within(sets, frequency(look));
+            if let Some(onset) = near.last_onset() {
+                return Self::within(sets, onset.ceil() as usize + frequency(OSCILLATION_RANGE));
+            }
+            look *= 2.0;
+        }
+        Self::within(sets, frequency(LAST_LOOK + OSCILLATION_RANGE))
+    }
+
+    /// The ring means up to `max_frequency` cycles per unit.
+    fn within(sets: &[PointSet], max_frequency: usize) -> Self {
         let each: Vec<RadialPower> =
-            sets.iter().map(|set| radial_power(std::slice::from_ref(set), limit)).collect();
+            sets.iter().map(|set| radial_power(std::slice::from_ref(set), max_frequency)).collect();
         let left_out = (0..each.len()).filter(|_| each.len() > 1).map(|i| {
             let others: Vec<&RadialPower> =
                 each.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, one)| one).collect();
@@ -35,6 +49,15 @@ impl Direct {
         let left_out = left_out.collect();
         let mean = RadialPower::mean_of(&each.iter().collect::<Vec<_>>());
         Self { mean, left_out }
+    }
+
+    /// From where Ω has to be looked at in the mean and with any set left out, if that is in range.
+    fn last_onset(&self) -> Option<f64> {
+        let mut last = self.mean.onset()?;
+        for left_out in &self.left_out {
+            last = last.max(left_out.onset()?);
+        }
+        Some(last)
     }
 
     pub(super) fn effective_nyquist(&self) -> Option<Estimate> {
@@ -47,34 +70,22 @@ impl Direct {
 
     /// A figure of the mean spectrum, its error from the means with each set left out.
     fn estimate(&self, figure: impl Fn(&RadialPower) -> Option<f64>) -> Option<Estimate> {
-        let left_out: Vec<f64> = self.left_out.iter().filter_map(&figure).collect();
+        let left_out: Vec<Option<f64>> = self.left_out.iter().map(&figure).collect();
         Some(Estimate::jackknife(figure(&self.mean)?, &left_out))
     }
 }
 
-/// The largest frequency (cycles per unit) that ν_eff and Ω ask for.
-fn range_of_interest(sets: &[PointSet]) -> usize {
-    let density = sets[0].density();
-    let frequency = |relative: f64| (relative * density.grid_nyquist()).ceil() as usize + 1;
-    let mut look = FIRST_LOOK;
-    while look < LAST_LOOK {
-        let power = radial_power(sets, frequency(look));
-        if let Some(onset) = power.onset() {
-            return onset.ceil() as usize + frequency(OSCILLATION_RANGE);
-        }
-        look *= 2.0;
-    }
-    frequency(LAST_LOOK + OSCILLATION_RANGE)
-}
-
 pub(super) fn radial_power(sets: &[PointSet], max_frequency: usize) -> RadialPower {
     RadialPower::of(sets, PeriodogramOptions::new(max_frequency))
-        .expect("10⁸ points ask for frequencies that can be planned")
+        .expect("up to SPECTRAL_LIMIT points ask for frequencies that can be planned")
 }
 
 /// The mean power below `frequency` of each set; none if no mode lies there.
 pub(super) fn powers_below(sets: &[PointSet], frequency: f64) -> Vec<f64> {
-    let below = |set| bn_spectral::power_below(set, frequency).ok().flatten();
+    let below = |set| {
+        bn_spectral::power_below(set, frequency)
+            .expect("frequencies up to POWER_BELOW_LIMIT can be planned")
+    };
     sets.iter().filter_map(below).collect()
 }
 

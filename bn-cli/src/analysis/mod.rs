@@ -4,6 +4,7 @@ mod direct;
 mod page;
 mod statistic;
 mod summary;
+mod thinning;
 mod windowed;
 
 use std::sync::OnceLock;
@@ -21,6 +22,12 @@ pub use self::windowed::Windowed;
 /// More points than this in a set make the windowed estimator, which compares all pairs, take over
 /// ten seconds a set and core.
 pub const WINDOWED_LIMIT: usize = 200_000;
+
+/// More points than this in a set ask for a periodogram beyond what can be planned.
+pub const SPECTRAL_LIMIT: usize = 100_000_000;
+
+/// The largest frequency, in cycles per unit, of [`Statistic::PowerBelow`]: 2·10⁸ modes.
+pub const POWER_BELOW_LIMIT: f64 = 8192.0;
 
 /// The statistics of sets of equally many points, computed when first asked for and then kept.
 ///
@@ -59,8 +66,12 @@ impl<'a> Analysis<'a> {
     }
 
     /// The same with the frequency, in cycles per unit, that [`Statistic::PowerBelow`] refers to.
+    ///
+    /// # Panics
+    /// If the frequency is not positive or beyond [`POWER_BELOW_LIMIT`].
     #[must_use]
     pub fn with_power_below(self, frequency: f64) -> Self {
+        assert!(frequency > 0.0 && frequency <= POWER_BELOW_LIMIT, "{frequency} is out of range");
         Self { power_below: Some(frequency), powers_below: OnceLock::new(), ..self }
     }
 
@@ -125,6 +136,9 @@ impl<'a> Analysis<'a> {
     }
 
     /// The ring means of the periodogram up to where Ω ends.
+    ///
+    /// # Panics
+    /// Like everything spectral, if a set has more than [`SPECTRAL_LIMIT`] points.
     pub fn direct(&self) -> &Direct {
         self.direct.get_or_init(|| Direct::of(self.sets))
     }
@@ -172,5 +186,42 @@ impl<'a> Analysis<'a> {
 
     fn each<T: Send>(&self, f: impl Fn(&PointSet) -> T + Sync + Send) -> Vec<T> {
         self.sets.par_iter().map(f).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bn_core::DVec2;
+
+    fn sets() -> Vec<PointSet> {
+        let points = |shift: f64| {
+            let at = |i: u32| DVec2::new(f64::from(i * 7 % 100) / 100.0, f64::from(i) / 100.0);
+            (0..100).map(|i| (at(i) + DVec2::new(shift, 0.0)).fract()).collect()
+        };
+        [0.0, 0.3].map(|shift| PointSet::new(points(shift)).expect("valid")).into()
+    }
+
+    #[test]
+    fn a_statistic_computes_nothing_else() {
+        let sets = sets();
+        let analysis = Analysis::of(&sets);
+        let made = |a: &Analysis<'_>| {
+            [
+                a.spacings.get().is_some(),
+                a.shapes.get().is_some(),
+                a.windowed.get().is_some(),
+                a.direct.get().is_some(),
+            ]
+        };
+        assert_eq!(made(&analysis), [false; 4]);
+        assert!(analysis.estimate(Statistic::MeanDistance).is_some());
+        assert_eq!(made(&analysis), [true, false, false, false]);
+        assert!(analysis.estimate(Statistic::BondOrder).is_some());
+        assert_eq!(made(&analysis), [true, true, false, false]);
+        assert!(analysis.estimate(Statistic::NuEffDirect).is_some());
+        assert_eq!(made(&analysis), [true, true, false, true]);
+        assert!(analysis.estimate(Statistic::NuEff).is_some());
+        assert_eq!(made(&analysis), [true; 4]);
     }
 }

@@ -1,8 +1,9 @@
 //! What the page of a report shows, measured.
 
-use bn_core::{Curve, Density};
+use bn_core::Curve;
 use bn_spectral::{Autocorrelation, PeriodogramOptions, PowerImage};
 
+use super::thinning::thinned;
 use super::{Analysis, Statistic, WINDOWED_LIMIT};
 use crate::plot::{Grid, Text};
 use crate::report::{self, ReportData};
@@ -19,7 +20,8 @@ const PAIRS: f64 = 10.0;
 impl Analysis<'_> {
     /// The data of the page, with the spectrum up to `max_frequency` cycles per unit.
     ///
-    /// The windowed statistics are left out above [`WINDOWED_LIMIT`] points a set.
+    /// The windowed statistics are left out above [`WINDOWED_LIMIT`] points a set. Of points that
+    /// crowd in one place, pairs are counted among some only, and the provenance says so.
     pub fn report_data(
         &self,
         title: String,
@@ -28,6 +30,12 @@ impl Analysis<'_> {
     ) -> ReportData {
         let n = self.sets[0].len();
         let range = (RANGE * self.density.hexagonal_spacing()).min(0.5);
+        let fewer = thinned(self.sets, range);
+        let pairs = Analysis::of(fewer.as_deref().unwrap_or(self.sets));
+        let provenance = match &fewer {
+            Some(sets) => format!("{provenance}; pairs of {} points a set", sets[0].len()),
+            None => provenance,
+        };
         let radial = self.radial_power(max_frequency);
         let undefined = || Curve::new(0.0, 1.0, vec![f64::NAN]);
         ReportData {
@@ -35,13 +43,18 @@ impl Analysis<'_> {
             points_per_set: n,
             sets: self.sets.len(),
             points: self.sets[0].points().to_vec(),
-            autocorrelation: self.autocorrelation(range),
+            autocorrelation: pairs.autocorrelation(range),
             spectrum: self.spectrum(max_frequency),
             anisotropy: radial
                 .anisotropy_db()
-                .map_or_else(undefined, |c| over_nyquist(&c, self.density)),
-            rdf: over_spacing(&self.rdf_within(range, self.rdf_bins(range)), self.density),
-            radial_power: radial.curve().map_or_else(undefined, |c| over_nyquist(&c, self.density)),
+                .map_or_else(undefined, |c| over(&c, self.density.grid_nyquist())),
+            rdf: over(
+                &pairs.rdf_within(range, pairs.rdf_bins(range)),
+                self.density.hexagonal_spacing(),
+            ),
+            radial_power: radial
+                .curve()
+                .map_or_else(undefined, |c| over(&c, self.density.grid_nyquist())),
             statistics: self.page_statistics(n <= WINDOWED_LIMIT),
             provenance,
         }
@@ -66,7 +79,7 @@ impl Analysis<'_> {
     fn spectrum(&self, max_frequency: usize) -> Grid {
         let options = PeriodogramOptions::new(max_frequency);
         let image = PowerImage::of(self.sets, options, report::MOST_CELLS)
-            .expect("10⁸ points ask for frequencies that can be planned");
+            .expect("up to SPECTRAL_LIMIT points ask for frequencies that can be planned");
         let half = self.density.normalize_frequency(image.half_width()).value();
         Grid::new(image.side(), image.power().to_vec(), [-half, half], [-half, half])
     }
@@ -96,12 +109,7 @@ impl Analysis<'_> {
     }
 }
 
-fn over_nyquist(curve: &Curve, density: Density) -> Curve {
-    let unit = density.grid_nyquist();
-    Curve::new(curve.start() / unit, curve.step() / unit, curve.values().to_vec())
-}
-
-fn over_spacing(curve: &Curve, density: Density) -> Curve {
-    let unit = density.hexagonal_spacing();
+/// The curve with its abscissae in units of `unit`.
+fn over(curve: &Curve, unit: f64) -> Curve {
     Curve::new(curve.start() / unit, curve.step() / unit, curve.values().to_vec())
 }

@@ -73,6 +73,11 @@ impl Statistic {
         }
     }
 
+    /// Whether it comes from the exact periodogram's ring means.
+    pub fn is_direct(self) -> bool {
+        matches!(self, Self::NuEffDirect | Self::OmegaDirect)
+    }
+
     /// Whether it comes from the RDF through the thesis's window.
     pub fn is_windowed(self) -> bool {
         matches!(self, Self::NuEff | Self::Omega)
@@ -119,8 +124,12 @@ impl Estimate {
     }
 
     /// A value taken once from all sets together, with the jackknife's standard error from the
-    /// same value taken with each set left out (Efron 1982): √((m−1)/m · Σ (v₋ᵢ − mean)²).
-    pub fn jackknife(value: f64, left_out: &[f64]) -> Self {
+    /// same value taken with each set left out (Efron 1982): √((m−1)/m · Σ (v₋ᵢ − mean)²). No error
+    /// for one set, or if the value isn't defined with one of the sets left out.
+    pub fn jackknife(value: f64, left_out: &[Option<f64>]) -> Self {
+        let Some(left_out) = left_out.iter().copied().collect::<Option<Vec<f64>>>() else {
+            return Self { value, std_error: None };
+        };
         let m = left_out.len() as f64;
         let mean = left_out.iter().sum::<f64>() / m;
         let squares: f64 = left_out.iter().map(|v| (v - mean) * (v - mean)).sum();
@@ -147,11 +156,13 @@ mod tests {
     fn the_jackknife_of_a_mean_is_its_standard_error() {
         let values = [1.0, 4.0, 2.0, 7.0];
         let mean = Estimate::mean(&values).expect("four values");
-        let left_out = values.map(|v| (14.0 - v) / 3.0);
+        let left_out = values.map(|v| Some((14.0 - v) / 3.0));
         let jackknife = Estimate::jackknife(3.5, &left_out);
         assert_eq!(mean.value, 3.5);
         let (a, b) = (mean.std_error.expect("four sets"), jackknife.std_error.expect("four sets"));
         assert!((a - b).abs() < 1e-15 && a > 1.0, "{a} {b}");
+        let undefined = Estimate::jackknife(3.5, &[Some(1.0), None, Some(2.0)]);
+        assert_eq!(undefined, Estimate { value: 3.5, std_error: None });
         assert_eq!(Estimate::mean(&[2.0]).expect("one value").std_error, None);
         assert_eq!(Estimate::mean(&[]), None);
     }

@@ -35,11 +35,9 @@ impl Windowed {
 
     /// A figure of the mean spectrum, its error from the means with each set left out.
     fn estimate(&self, figure: impl Fn(&WindowedSpectrum) -> Option<f64>) -> Option<Estimate> {
-        let left_out = (0..self.each.len()).filter(|_| self.each.len() > 1).filter_map(|i| {
-            let mut others = self.each.clone();
-            others.remove(i);
-            figure(&WindowedSpectrum::mean(&others).ok()?)
-        });
+        let sets = self.each.len();
+        let others = self.each.iter().filter(|_| sets > 1);
+        let left_out = others.map(|one| figure(&self.mean.without(one, sets)));
         Some(Estimate::jackknife(figure(&self.mean)?, &left_out.collect::<Vec<_>>()))
     }
 }

@@ -7,7 +7,9 @@ use bn_core::{Curve, PointSet};
 use clap::{Args, Command, ValueEnum};
 
 use super::Global;
-use crate::analysis::{Analysis, Statistic, Summary, WINDOWED_LIMIT};
+use crate::analysis::{
+    Analysis, POWER_BELOW_LIMIT, SPECTRAL_LIMIT, Statistic, Summary, WINDOWED_LIMIT,
+};
 use crate::{Failure, Outcome, input, output};
 
 #[derive(Debug, Args)]
@@ -93,7 +95,7 @@ pub(super) fn run(args: &Analyze, global: &Global) -> Outcome {
     let groups = args.groups()?;
     if let Some(curve) = args.curve {
         let path = args.output.as_deref().unwrap_or(Path::new("-"));
-        return write_curve(curve, args.method, &groups, path);
+        return write_curve(curve, args.method, &groups, path, global);
     }
     let mut summaries = Vec::new();
     for group in groups {
@@ -117,10 +119,10 @@ pub(super) fn run(args: &Analyze, global: &Global) -> Outcome {
 impl Analyze {
     fn check(&self) -> Outcome {
         if let Some(nu) = self.power_below
-            && !(nu.is_finite() && nu > 0.0)
+            && !(nu > 0.0 && nu <= POWER_BELOW_LIMIT)
         {
             return Err(Failure::misuse(format!(
-                "--power-below {nu}: a positive frequency is needed"
+                "--power-below {nu}: a frequency above 0 and up to {POWER_BELOW_LIMIT} is needed"
             )));
         }
         let only = self.only.as_deref().unwrap_or_default();
@@ -129,10 +131,18 @@ impl Analyze {
                 "--only power_below needs a frequency: add --power-below NU",
             ));
         }
-        if self.method == Some(Estimator::Direct) && only.iter().any(|s| s.is_windowed()) {
-            return Err(Failure::misuse(
-                "--method direct gives nu_eff_direct and omega_direct; ask for these with --only",
-            ));
+        if self.power_below.is_some() && !only.is_empty() && !only.contains(&Statistic::PowerBelow)
+        {
+            return Err(Failure::misuse("--power-below NU: --only leaves power_below out"));
+        }
+        let left_out = |s: &Statistic| match self.method {
+            Some(Estimator::Direct) => s.is_windowed(),
+            Some(Estimator::Windowed) => s.is_direct(),
+            None => false,
+        };
+        if let Some(statistic) = only.iter().find(|s| left_out(s)) {
+            let key = statistic.key();
+            return Err(Failure::misuse(format!("--only {key}: --method leaves {key} out")));
         }
         if let (Some(curve), Some(_)) = (self.curve, self.method)
             && !matches!(curve, CurveName::RadialPower)
@@ -174,27 +184,37 @@ impl Analyze {
         let wanted = |statistic: &Statistic| match statistic {
             Statistic::PowerBelow => self.power_below.is_some(),
             s if s.is_windowed() => self.method != Some(Estimator::Direct),
-            Statistic::NuEffDirect | Statistic::OmegaDirect => {
-                self.method != Some(Estimator::Windowed)
-            }
+            s if s.is_direct() => self.method != Some(Estimator::Windowed),
             _ => true,
         };
-        let asked = self.only.clone().unwrap_or_else(|| Statistic::ALL.to_vec());
-        let mut list: Vec<Statistic> =
-            asked.into_iter().filter(|s| self.only.is_some() || wanted(s)).collect();
+        let mut list: Vec<Statistic> = match &self.only {
+            Some(only) => Statistic::ALL.into_iter().filter(|s| only.contains(s)).collect(),
+            None => Statistic::ALL.into_iter().filter(wanted).collect(),
+        };
+        if n > SPECTRAL_LIMIT && list.iter().any(|s| s.is_direct()) {
+            list.retain(|s| !s.is_direct());
+            global.remark(format!(
+                "nu_eff_direct and omega_direct left out: they serve up to {SPECTRAL_LIMIT} points"
+            ));
+        }
         if too_large && list.iter().any(|s| s.is_windowed()) {
             list.retain(|s| !s.is_windowed());
             if self.method.is_none() {
-                let pairs = n as f64 * n as f64 / 2.0;
                 global.remark(format!(
-                    "nu_eff and omega left out: the windowed estimator would compare {pairs:.1e} \
-                     pairs a set, about {:.0} s on one core; --method windowed asks for it",
-                    pairs * 1e-9
+                    "nu_eff and omega left out: the windowed estimator would compare {}; --method \
+                     windowed asks for it",
+                    cost_of_pairs(n)
                 ));
             }
         }
         list
     }
+}
+
+/// What comparing all pairs of `n` points costs.
+fn cost_of_pairs(n: usize) -> String {
+    let pairs = n as f64 * n as f64 / 2.0;
+    format!("{pairs:.1e} pairs a set, about {:.0} s on one core", pairs * 1e-9)
 }
 
 impl Group {
@@ -230,10 +250,20 @@ fn write_curve(
     method: Option<Estimator>,
     groups: &[Group],
     path: &Path,
+    global: &Global,
 ) -> Outcome {
     let [group] = groups else {
         return Err(Failure::misuse("--curve takes one file, or several with --average"));
     };
+    let n = group.sets[0].len();
+    let pairs = matches!(name, CurveName::Rdf) || method == Some(Estimator::Windowed);
+    if pairs && n > WINDOWED_LIMIT {
+        global.remark(format!("comparing {}", cost_of_pairs(n)));
+    } else if !pairs && n > SPECTRAL_LIMIT {
+        return Err(Failure::misuse(format!(
+            "the spectrum of {n} points can't be planned; {SPECTRAL_LIMIT} at most"
+        )));
+    }
     let analysis = Analysis::of(&group.sets);
     let spectrum = || analysis.radial_power(analysis.shown_frequency());
     let (header, curve): (&str, Option<Curve>) = match name {
@@ -245,9 +275,10 @@ fn write_curve(
         }
         CurveName::Anisotropy => ("nu,anisotropy_db", spectrum().anisotropy_db()),
     };
+    let curve = curve.ok_or_else(|| Failure::misuse("the curve has no point for these sets"))?;
     output::write_to(path, |w| {
         writeln!(w, "{header}")?;
-        for (x, y) in curve.iter().flat_map(Curve::iter).filter(|(_, y)| y.is_finite()) {
+        for (x, y) in curve.iter().filter(|(_, y)| y.is_finite()) {
             writeln!(w, "{x},{y}")?;
         }
         Ok(())

@@ -8,7 +8,8 @@ use anyhow::anyhow;
 use bn_core::io::Format;
 use bn_core::{Observer, PointSet, Seed, Unobserved};
 use bn_samplers::{
-    DefaultValue, Given, METHODS, Method, OptionKind, OptionSpec, Report, Sample, Sampler,
+    CountRule, DefaultValue, Given, METHODS, Method, OptionKind, OptionSpec, Report, Sample,
+    Sampler,
 };
 use clap::builder::ValueRange;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command};
@@ -129,7 +130,8 @@ pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
         ));
     }
     let format = args.format;
-    output_points::check(&args.output, format)?;
+    output_points::check(&args.output, format, args.sets as usize)?;
+    check_equal_sizes(method, &args, &options)?;
     let start = Instant::now();
     let samples = sample_all(&*sampler, &args, global)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -156,6 +158,22 @@ fn given_options<'a>(
 ) -> Vec<(&'static str, &'a str)> {
     let typed = |spec: &OptionSpec| matches.get_one::<String>(spec.name).map(String::as_str);
     method.options.iter().filter_map(|spec| Some((spec.name, typed(spec)?))).collect()
+}
+
+/// Refuses `.npy` for sets that will differ in size, before they are made.
+fn check_equal_sizes(method: &Method, args: &Generate, options: &[(&str, &str)]) -> Outcome {
+    let npy = match args.format {
+        Some(format) => format == Format::Npy,
+        None => Format::from_path(&args.output) == Ok(Format::Npy),
+    };
+    let exact = options.iter().any(|&(name, text)| name == "exact" && text != "false");
+    if npy && args.sets > 1 && method.counts == CountRule::Approximate && !exact {
+        return Err(Failure::misuse(format!(
+            "sets of {} differ in size, and .npy holds sets of one size: write a .dat or .json",
+            method.name
+        )));
+    }
+    Ok(())
 }
 
 /// The options as the method takes them: files of points and densities are read here.

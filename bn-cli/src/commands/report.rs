@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use bn_core::io::Format;
 use clap::{Args, Command};
 
-use crate::analysis::Analysis;
+use crate::analysis::{Analysis, SPECTRAL_LIMIT};
 use crate::{Failure, Outcome, input, output, report};
 
 #[derive(Debug, Args)]
@@ -23,9 +23,9 @@ pub(super) struct Report {
     /// Width of a .png in pixels (default: so that a pixel is a mode of the spectrum, or several)
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(200..=20_000))]
     width: Option<u32>,
-    /// Show the spectrum up to this frequency, in sqrt(n)/2
-    #[arg(long, value_name = "NU", default_value_t = 10.0, allow_negative_numbers = true)]
-    range: f64,
+    /// Show the spectrum up to this frequency, in sqrt(n)/2 (default: 10, less above 4 million points)
+    #[arg(long, value_name = "NU", allow_negative_numbers = true)]
+    range: Option<f64>,
     /// Format of the files (default: by each file's extension)
     #[arg(long, value_name = "FORMAT")]
     format: Option<Format>,
@@ -53,8 +53,8 @@ enum Page {
 
 pub(super) fn run(args: &Report) -> Outcome {
     let page = page_format(&args.output)?;
-    if !(args.range > 0.0 && args.range <= 100.0) {
-        return Err(Failure::misuse(format!("--range {}: from above 0 to 100", args.range)));
+    if args.width.is_some() && !matches!(page, Page::Png) {
+        return Err(Failure::misuse("--width belongs to a .png; other pages have no pixels"));
     }
     let mut sets = Vec::new();
     for file in &args.files {
@@ -67,10 +67,16 @@ pub(super) fn run(args: &Report) -> Outcome {
             other.len()
         )));
     }
+    if n > SPECTRAL_LIMIT {
+        return Err(Failure::misuse(format!(
+            "the spectrum of {n} points can't be planned; {SPECTRAL_LIMIT} at most"
+        )));
+    }
     let names = args.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>();
     let title = args.title.clone().unwrap_or_else(|| heading(&names));
     let analysis = Analysis::of(&sets);
-    let frequency = (args.range * analysis.density().grid_nyquist()).ceil().max(1.0) as usize;
+    let range = range(args.range, n)?;
+    let frequency = (range * analysis.density().grid_nyquist()).ceil().max(1.0) as usize;
     let provenance = format!("bn {} report {}", env!("CARGO_PKG_VERSION"), names.join(" "));
     let data = analysis.report_data(title, provenance, frequency);
     let drawn = |error| Failure::failed(anyhow!("{}: {error}", args.output.display()));
@@ -80,6 +86,22 @@ pub(super) fn run(args: &Report) -> Outcome {
         Page::Html => report::to_html(&data).map_err(drawn)?.into_bytes(),
     };
     output::write_to(&args.output, |w| Ok(w.write_all(&bytes)?))
+}
+
+/// The most modes of a page's spectrum, which has range²·n of them: some ten seconds and 1 GB.
+const MOST_MODES: f64 = 4e8;
+
+/// The range of the spectrum, in √n/2, for sets of `n` points.
+fn range(asked: Option<f64>, n: usize) -> Outcome<f64> {
+    let most = (MOST_MODES / n as f64).sqrt();
+    match asked {
+        None => Ok(most.min(10.0)),
+        Some(range) if range > 0.0 && range <= most.min(100.0) => Ok(range),
+        Some(range) => Err(Failure::misuse(format!(
+            "--range {range}: from above 0 to {:.3} for {n} points",
+            most.min(100.0)
+        ))),
+    }
 }
 
 fn heading(names: &[String]) -> String {

@@ -25,11 +25,6 @@ fn pages_of_other_kinds_are_refused() {
     folder.bn("generate stochastic -n 16 -o s.txt").done();
     folder.bn("report s.txt -o page.pdf").refused(2, &["page.pdf", ".png"]);
     folder.bn("report s.txt -o page.png --range 0").refused(2, &["--range"]);
+    folder.bn("report s.txt -o page.svg --width 500").refused(2, &["--width"]);
     assert_eq!(folder.names(), ["s.txt"]);
-}
-
-#[cfg(not(feature = "report"))]
-#[test]
-fn without_the_feature_there_is_no_report() {
-    Folder::new().bn("report s.txt -o page.png").refused(2, &["report"]);
 }

@@ -8,6 +8,8 @@ use thiserror::Error;
 
 /// A format of point files; the [module documentation](super) says what each one holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Format {
     /// `.txt`: an optional line with the number of points, then a line `x y` for each.

@@ -86,6 +86,7 @@ pub use format::{Format, UnknownFormat};
 
 /// How to read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReadOptions {
     /// Take coordinates outside [0, 1) modulo 1 instead of refusing them.
     pub wrap: bool,

@@ -18,8 +18,8 @@ use crate::{
 /// Graph. 5(1), 1986. No dart is wasted on what is known to be covered, which changes nothing in
 /// the distribution, so that even the last points before the torus is full take O(1) time.
 ///
-/// When the torus is full, 0.603/r² (n = 1 with r in unit lengths) points fit on average: with a
-/// radius of 0.7766 `d_hex` just about n. [`DartThrowing::reliable_radius`] stays below it by six
+/// When the torus is full, 0.6965/r² points (r in unit lengths) fit on average: with a radius of
+/// 0.7766 `d_hex` just about n. [`DartThrowing::reliable_radius`] stays below it by six
 /// standard deviations of that number; beyond, the method may end with an error that tells the
 /// count reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,7 +43,7 @@ pub(crate) const METHOD: Method = Method {
         name: "radius",
         kind: OptionKind::Real { min: 0.0, max: LARGEST },
         default: DefaultValue::Absent("the largest that is reliably reached, 0.768 at n = 4096"),
-        help: "smallest distance of two points; more than 0.77 may fit fewer than n",
+        help: "smallest distance of two points; more than the default may fit fewer than n",
         unit: "d_hex",
     }],
     build: |options| {

@@ -92,6 +92,21 @@ impl WindowedSpectrum {
         Ok(Self { density: first.density, power })
     }
 
+    /// The mean of the other spectra, where this is the mean of `sets`, `one` among them: what a
+    /// jackknife asks for.
+    ///
+    /// # Panics
+    /// If there are fewer than two sets, or `one` belongs to sets of another size.
+    #[must_use]
+    pub fn without(&self, one: &Self, sets: usize) -> Self {
+        assert!(sets > 1, "nothing is left");
+        assert_eq!(self.density, one.density, "the spectra belong to sets of different size");
+        let (sets, others) = (sets as f64, sets as f64 - 1.0);
+        let values = self.power.values().iter().zip(one.power.values());
+        let mean = values.map(|(mean, one)| (sets * mean - one) / others).collect();
+        Self { density: self.density, power: Curve::new(0.0, self.power.step(), mean) }
+    }
+
     /// P(ν) at ν = j·√n/200 cycles per unit, j < 100·√n.
     pub fn power(&self) -> &Curve {
         &self.power

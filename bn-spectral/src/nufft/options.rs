@@ -51,8 +51,9 @@ impl NufftOptions {
     /// The largest K that can be asked for.
     pub const MAX_FREQUENCY: usize = 1 << 16;
 
-    /// Modes with |kx|, |ky| ≤ K = `max_frequency`, to a relative l2 error of `tolerance`; values
-    /// outside [1e-13, 1e-2] count as the nearest in it. Single precision reaches about 1e-5.
+    /// Modes with |kx|, |ky| ≤ K = `max_frequency`, to a relative l2 error of `tolerance` for points in
+    /// general position, up to three times that on lattices, whose errors add up in single modes;
+    /// values outside [1e-13, 1e-2] count as the nearest in it. Single precision reaches about 1e-5.
     ///
     /// Expects (K/5)² points: a range of ten times their √n/2.
     pub fn new(max_frequency: usize, tolerance: f64) -> Self {

@@ -20,16 +20,22 @@ const LIMIT: Duration = Duration::from_secs(120);
 pub(super) fn run() -> Outcome {
     cargo(&["build", "--quiet", "--release", "--package", "bn-cli", "--bin", "bn"], &[])?;
     let programs = Metadata::load()?.target_directory.join("release");
+    let mut found = 0;
     for document in documents()? {
         let text = fs::read_to_string(&document)
             .with_context(|| format!("cannot read {}", document.display()))
             .map_err(Failure::failed)?;
         let folder = tempfile::tempdir()?;
-        for line in commands(&text) {
+        let commands = commands(&text);
+        found += commands.len();
+        for line in commands {
             eprintln!("$ {line}");
             let name = format!("{}: {line}", document.display());
             process::run(&mut shell(&line, folder.path(), &programs)?, LIMIT, &name)?;
         }
+    }
+    if found == 0 {
+        return Err(Failure::failed(anyhow::anyhow!("the documentation shows no command")));
     }
     Ok(())
 }
@@ -87,8 +93,8 @@ fn shell(line: &str, folder: &Path, programs: &Path) -> Outcome<Command> {
     let old = env::var_os("PATH").unwrap_or_default();
     let path = env::join_paths(std::iter::once(programs.to_owned()).chain(env::split_paths(&old)))
         .map_err(Failure::failed)?;
-    let mut command = Command::new("sh");
-    command.args(["-c", line]).current_dir(folder).env("PATH", path);
+    let mut command = Command::new("bash");
+    command.args(["-o", "pipefail", "-c", line]).current_dir(folder).env("PATH", path);
     command.stdin(std::process::Stdio::null()).stdout(std::process::Stdio::null());
     Ok(command)
 }
@@ -132,5 +138,7 @@ bn completions bash
         let mut command = shell(line, folder.path(), Path::new("/a/b")).expect("a path");
         process::run(&mut command, LIMIT, "a line").expect("it runs");
         assert!(folder.path().join("here").exists());
+        let mut failing = shell("false | cat", folder.path(), Path::new("/a/b")).expect("a path");
+        assert!(process::run(&mut failing, LIMIT, "a pipe").is_err());
     }
 }

@@ -2,6 +2,7 @@
 
 mod curves;
 mod store;
+pub(crate) mod trace;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -62,6 +63,11 @@ impl Workbench {
 
     pub(crate) fn plan(&self) -> Plan {
         self.plan
+    }
+
+    /// Where point sets are kept, if they are.
+    pub(crate) fn store(&self) -> Option<&Store> {
+        self.store.as_ref()
     }
 
     /// The row's statistics; measured when first asked for.

@@ -8,6 +8,7 @@ use bn_core::PointSet;
 use bn_samplers::{CountRule, DefaultValue, Method};
 
 use super::Plan;
+use super::trace::TracePlace;
 use crate::thesis::RowSpec;
 
 /// A folder of point sets in double precision.
@@ -79,6 +80,11 @@ fn escaped(text: &str) -> String {
 }
 
 impl Place {
+    /// The place of what the run told on its way to the set.
+    pub(super) fn trace(&self) -> TracePlace {
+        TracePlace { path: self.path.with_extension("trace.json"), reading: self.reading }
+    }
+
     /// The set, if a good one is there.
     pub(super) fn read(&self) -> Option<PointSet> {
         if !self.reading || !self.path.exists() {

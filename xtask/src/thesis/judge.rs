@@ -151,6 +151,10 @@ impl Judge {
         &self.thesis
     }
 
+    pub(super) fn basis(&self) -> &Basis {
+        &self.basis
+    }
+
     /// Judges `ours` (none: not measurable) for `row` of `table`.
     pub(crate) fn judge(
         &self,
@@ -165,7 +169,7 @@ impl Judge {
             Basis::Quick(expected) => {
                 self.by_quick(expected.get(&row.method, quantity), quantity, ours)
             }
-            Basis::Nothing => Judgement::not_judged(None),
+            Basis::Nothing => Judgement::not_judged(None, Verdict::NotJudged),
         };
         Judgement { thesis, ..judgement }
     }
@@ -173,7 +177,7 @@ impl Judge {
     /// The judgement on a row whose method doesn't exist yet.
     pub(crate) fn not_yet(&self, table: &str, row: &RowSpec, quantity: Quantity) -> Judgement {
         let thesis = self.thesis.value(table, &row.thesis, quantity.key());
-        Judgement { thesis, verdict: Verdict::NotYet, ..Judgement::not_judged(None) }
+        Judgement { thesis, ..Judgement::not_judged(None, Verdict::NotYet) }
     }
 
     fn by_thesis(&self, row: &RowSpec, quantity: Quantity, ours: Option<f64>) -> Judgement {
@@ -190,7 +194,7 @@ impl Judge {
             );
         }
         let Some(range) = self.thesis.range(&row.thesis, quantity.key()) else {
-            return Judgement::not_judged(None);
+            return Judgement::not_judged(None, Verdict::NotJudged);
         };
         let (tolerance, reason) = self.tolerance(&row.thesis, quantity, range.1);
         Judgement::held_against(ours, range, tolerance, reason, Verdict::Agrees)
@@ -218,7 +222,7 @@ impl Judge {
     ) -> Judgement {
         let Some(Expected { mean, deviation }) = expected else {
             let how = "no expected value is stored: cargo xtask tables --record-quick";
-            return Judgement::not_judged(Some(how.to_owned()));
+            return Judgement::not_judged(Some(how.to_owned()), Verdict::NotJudged);
         };
         let quick = &self.tolerances.quick;
         let floor = quick.floor.get(&quantity).copied().unwrap_or(0.0);
@@ -228,13 +232,13 @@ impl Judge {
 }
 
 impl Judgement {
-    fn not_judged(reason: Option<String>) -> Self {
-        let verdict = Verdict::NotJudged;
+    /// The judgement on what is not held against anything: not judged, or not yet there.
+    pub(super) fn not_judged(reason: Option<String>, verdict: Verdict) -> Self {
         Self { thesis: None, expected: None, tolerance: None, reason, verdict }
     }
 
     /// `good` if `ours` lies at most `tolerance` outside `expected`.
-    fn held_against(
+    pub(super) fn held_against(
         ours: Option<f64>,
         expected: (f64, f64),
         tolerance: f64,
