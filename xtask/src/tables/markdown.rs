@@ -135,7 +135,8 @@ mod tests {
                 cells: [Quantity::DMin, Quantity::RC].map(cell).into(),
             }
         };
-        let rows = vec![row("dart-throwing", Some(0.81), None), row("net", None, Some("no bits"))];
+        let rows =
+            vec![row("dart-throwing", Some(0.81), None), row("regular", None, Some("no square"))];
         Table { id: "4.2", title: "a test", decimals: 2, rows }
     }
 
@@ -149,7 +150,7 @@ mod tests {
         assert!(text.starts_with("## Table 4.2: a test\n\n10 sets of 4096 points, seed 1.\n"));
         assert!(lines[3].contains("explained [1]") && lines[3].contains("1.07"), "{text}");
         assert!(lines[4].contains("OUTSIDE [2]") && lines[5].contains("OUTSIDE [2]"), "{text}");
-        assert!(text.contains("[2] Low discrepancy: no bits\n"), "{text}");
+        assert!(text.contains("[2] Regular (square) grid: no square\n"), "{text}");
         assert!(text.contains("- `dart-throwing` with `--radius"), "{text}");
     }
 }
