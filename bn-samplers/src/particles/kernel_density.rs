@@ -46,7 +46,7 @@ pub(crate) const METHOD: Method = Method {
     page: Some(111),
     citation: "R. Fattal, Blue-noise point sampling using kernel density model, ACM Trans. Graph. 30(4), 2011",
     complexity: "O(n)",
-    order: PointOrder::Random,
+    order: PointOrder::Scan,
     counts: CountRule::Any,
     seeded: true,
     options: &[
@@ -147,16 +147,17 @@ impl KernelDensity {
 
     /// One Langevin step: x ← x − h·∇E + √(2hT)·ξ with standard normal ξ.
     fn step(&self, points: Vec<DVec2>, seed: Seed, first_stream: u32) -> Vec<DVec2> {
-        let width = self.width / (points.len() as f64).sqrt();
+        let spacing = 1.0 / (points.len() as f64).sqrt();
+        let width = self.width * spacing;
         let scale = 1.0 / (width * width);
         // −∇ exp(−d²/w²) = 2d/w²·exp(−d²/w²)
         let factor = |squared: f64| 2.0 * scale * libm::exp(-squared * scale);
         let set = PointSet::new(points).expect("points of the unit torus");
         let forces = pair_forces(&set, CUTOFF * width, factor);
         let mut points = set.into_points();
-        // A pair's energy curves by at most 2/w² along each axis: a particle amid the half dozen that
-        // its kernel reaches is moved at a stable rate.
-        let rate = STEP * width * width;
+        // A wave of n particles per unit area curves the energy by up to 4πn/e: with wide kernels the
+        // step is bounded by the spacing rather than the width.
+        let rate = STEP * width.min(spacing).powi(2);
         let noise = (2.0 * rate * self.temperature).sqrt();
         let blocks = points.par_chunks_mut(BLOCK).zip(forces.par_chunks(BLOCK)).enumerate();
         blocks.for_each(|(block, (points, forces))| {
@@ -170,7 +171,7 @@ impl KernelDensity {
     }
 }
 
-/// Length of a step in units of w² over the energy.
+/// Length of a step in units of the squared width, or spacing, over the energy.
 const STEP: f64 = 0.2;
 
 /// Replaces each particle by four, some by three so that there are `count`, at random places around
