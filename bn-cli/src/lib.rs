@@ -12,6 +12,7 @@
 
 pub mod analysis;
 pub mod commands;
+mod curve_file;
 pub mod density;
 mod failure;
 pub mod input;

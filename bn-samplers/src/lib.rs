@@ -46,6 +46,7 @@ mod regular;
 mod report;
 mod sampler;
 mod sobol;
+mod spectrum_matching;
 mod stochastic;
 
 pub use best_candidate::BestCandidate;
@@ -70,4 +71,9 @@ pub use regular::Regular;
 pub use report::{Figure, FigureValue, Report};
 pub use sampler::{Sample, Sampler};
 pub use sobol::{Scramble, Sobol};
+pub use spectrum_matching::single_peak::SinglePeak;
+pub use spectrum_matching::step::Step;
+pub use spectrum_matching::{
+    Algorithm, Annealing, Force, Gradient, Residual, Spectral, SpectrumMatching, Stage, Weights,
+};
 pub use stochastic::Stochastic;

@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::names::nearest_name;
 use crate::particles::{electrostatic, kernel_density};
 use crate::poisson_disk::{dart_throwing, maximal};
+use crate::spectrum_matching::{single_peak, step};
 use crate::{
     Method, best_candidate, farthest_point_optimization, farthest_point_strategy, halton,
     hexagonal, jittered, lloyd, net, r2, regular, sobol, stochastic,
@@ -28,6 +29,8 @@ pub const METHODS: &[&Method] = &[
     &regular::METHOD,
     &hexagonal::METHOD,
     &farthest_point_optimization::METHOD,
+    &step::METHOD,
+    &single_peak::METHOD,
     &halton::METHOD,
     &sobol::METHOD,
     &r2::METHOD,

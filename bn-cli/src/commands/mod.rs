@@ -5,8 +5,11 @@ mod completions;
 mod convert;
 mod generate;
 mod list;
+mod match_;
+mod realize;
 #[cfg(feature = "report")]
 mod report;
+mod target;
 
 use std::ffi::OsString;
 
@@ -56,6 +59,8 @@ pub fn command() -> Command {
             list::command(),
             generate::command(),
             analyze::command(),
+            match_::command(),
+            realize::command(),
             convert::command(),
             completions::command(),
         ]);
@@ -83,6 +88,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Outcome {
         Some(("list", matches)) => list::run(&parsed(matches)?),
         Some(("generate", matches)) => generate::run(matches, &global),
         Some(("analyze", matches)) => analyze::run(&parsed(matches)?, &global),
+        Some(("match", matches)) => match_::run(&parsed(matches)?, &global),
+        Some(("realize", matches)) => realize::run(&parsed(matches)?, &global),
         Some(("convert", matches)) => convert::run(&parsed(matches)?),
         Some(("completions", matches)) => completions::run(&parsed(matches)?),
         #[cfg(feature = "report")]

@@ -1,0 +1,175 @@
+//! Simulated annealing of the pair correlation.
+
+use bn_core::{Curve, DVec2, Observer, PointSet, Progress, Seed, torus};
+use bn_spectral::{PairHistogram, Target};
+use rand::RngExt as _;
+
+use super::Outcome;
+use crate::SampleError;
+use crate::error::observe;
+
+/// Spectrum matching by simulated annealing: M. D. Rintoul and S. Torquato, "Reconstruction of the
+/// structure of dispersions", J. Colloid Interface Sci. 186, 1997.
+///
+/// One random point at a time is moved at random; the move is kept if it lowers the energy, the
+/// squared difference of pair counts from those wanted over what their noise would be, and else with
+/// the probability e^(−ΔE/T). After each sweep over all points T and, where too few moves are kept,
+/// their length are lowered. A move costs O(n).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Annealing {
+    /// Bins to a unit of 1/√n, over [0, ½).
+    pub resolution: f64,
+    /// T of the first sweep, in units of the energy's noise of one bin.
+    pub temperature: f64,
+    /// The factor of T after each sweep.
+    pub cooling: f64,
+    /// The most sweeps.
+    pub iterations: u32,
+}
+
+impl Default for Annealing {
+    fn default() -> Self {
+        Self { resolution: 20.0, temperature: 1.0, cooling: 0.95, iterations: 400 }
+    }
+}
+
+/// The stream of a seed that moves are drawn from; starting points have the first ones.
+const TASK: u32 = u32::MAX;
+
+impl Annealing {
+    pub(super) fn run(
+        &self,
+        target: &Target,
+        start: &PointSet,
+        seed: Seed,
+        observer: &dyn Observer,
+    ) -> Result<Outcome, SampleError> {
+        let n = start.len();
+        let root = (n as f64).sqrt();
+        let bins = ((0.5 * self.resolution * root) as usize).clamp(2, 1 << 20);
+        let mut state = State::new(target, start, bins);
+        let mut rng = seed.stream(TASK);
+        let (mut temperature, mut length) = (self.temperature, 0.5);
+        for sweep in 0..self.iterations {
+            let figures = [("energy", state.energy()), ("temperature", temperature)];
+            let progress = Progress::new("annealing", sweep.into(), Some(self.iterations.into()));
+            observe(observer, &progress.with_figures(&figures))?;
+            observer.iterated(sweep.into(), &|| state.points.clone());
+            let mut kept = 0;
+            for _ in 0..n {
+                let index = rng.random_range(0..n as u32) as usize;
+                let step = DVec2::new(rng.random::<f64>() - 0.5, rng.random::<f64>() - 0.5);
+                let chance: f64 = rng.random();
+                let place = torus::wrap_point(state.points[index] + step * (2.0 * length / root));
+                let change = state.change(index, place);
+                if change <= 0.0 || chance < libm::exp(-change / temperature) {
+                    state.keep(index, place);
+                    kept += 1;
+                }
+            }
+            temperature *= self.cooling;
+            length = if 5 * kept < n { (0.9 * length).max(1e-4) } else { (1.05 * length).min(0.5) };
+        }
+        Ok(Outcome { points: state.points, iterations: self.iterations, converged: false })
+    }
+}
+
+/// The points, their pair counts and the counts wanted.
+struct State {
+    points: Vec<DVec2>,
+    bins_per_unit: f64,
+    /// Count less the count wanted, by bin.
+    excess: Vec<f64>,
+    /// One over the variance of each count, of independent points.
+    weights: Vec<f64>,
+    /// Changes of counts by the move at hand, and the bins that change.
+    delta: Vec<f64>,
+    touched: Vec<usize>,
+}
+
+impl State {
+    fn new(target: &Target, start: &PointSet, bins: usize) -> Self {
+        let histogram = PairHistogram::new(start, bins);
+        let wanted: Curve = target.rdf_histogram(bins);
+        let pairs = start.len() as f64 * (start.len() as f64 - 1.0) / 2.0;
+        let unit = pairs * std::f64::consts::PI * histogram.bin_width().powi(2);
+        let expected = |i: usize| unit * (2 * i + 1) as f64;
+        let counts = histogram.counts().iter().zip(wanted.values()).enumerate();
+        Self {
+            points: start.points().to_vec(),
+            bins_per_unit: 1.0 / histogram.bin_width(),
+            excess: counts.map(|(i, (&count, g))| count as f64 - g * expected(i)).collect(),
+            weights: (0..bins).map(|i| 1.0 / expected(i).max(1.0)).collect(),
+            delta: vec![0.0; bins],
+            touched: Vec::new(),
+        }
+    }
+
+    /// Σ (count − wanted)²/variance: about the number of bins for independent points.
+    fn energy(&self) -> f64 {
+        self.excess.iter().zip(&self.weights).map(|(e, w)| w * e * e).sum()
+    }
+
+    /// By how much the energy changes if the point goes to `place`; remembers the changes of counts.
+    fn change(&mut self, index: usize, place: DVec2) -> f64 {
+        for bin in self.touched.drain(..) {
+            self.delta[bin] = 0.0;
+        }
+        let from = self.points[index];
+        for (other, &q) in self.points.iter().enumerate() {
+            if other == index {
+                continue;
+            }
+            for (p, sign) in [(from, -1.0), (place, 1.0)] {
+                let bin = (torus::distance(p, q) * self.bins_per_unit) as usize;
+                if bin < self.delta.len() {
+                    self.delta[bin] += sign;
+                    self.touched.push(bin);
+                }
+            }
+        }
+        // Bins come up several times; each counts once.
+        self.touched.sort_unstable();
+        self.touched.dedup();
+        let change = |&bin: &usize| {
+            let (delta, excess) = (self.delta[bin], self.excess[bin]);
+            self.weights[bin] * delta * (2.0 * excess + delta)
+        };
+        self.touched.iter().map(change).sum()
+    }
+
+    /// Makes the move that was looked at last.
+    fn keep(&mut self, index: usize, place: DVec2) {
+        self.points[index] = place;
+        for &bin in &self.touched {
+            self.excess[bin] += self.delta[bin];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stochastic::uniform_points;
+    use bn_core::Density;
+
+    #[test]
+    fn changes_of_the_energy_are_its_differences() {
+        let n = 60;
+        let set = PointSet::new(uniform_points(n, Seed::new(4), 0).expect("few")).expect("valid");
+        let target = Target::step(Density::new(n), 4.0).expect("valid");
+        let mut state = State::new(&target, &set, 80);
+        for (index, place) in
+            uniform_points(n, Seed::new(5), 0).expect("few").into_iter().enumerate()
+        {
+            let before = state.energy();
+            let change = state.change(index, place);
+            state.keep(index, place);
+            let now = PointSet::new(state.points.clone()).expect("on the torus");
+            let fresh = State::new(&target, &now, 80).energy();
+            assert!((before + change - state.energy()).abs() < 1e-9 * before);
+            assert!((fresh - state.energy()).abs() < 1e-9 * before, "{fresh} {}", state.energy());
+        }
+    }
+}

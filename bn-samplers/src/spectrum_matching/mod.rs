@@ -1,0 +1,209 @@
+//! Point sets made from the spectrum that they are to have (thesis chapter 5).
+
+mod annealing;
+mod force;
+mod gradient;
+pub(crate) mod single_peak;
+mod spectral;
+pub(crate) mod step;
+mod table_forces;
+
+use bn_core::{DVec2, Observer, PointSet, Seed};
+use bn_spectral::Target;
+
+use crate::error::check_count;
+use crate::{
+    DefaultValue, OptionKind, OptionSpec, OptionValues, Report, Sample, SampleError, Sampler,
+    Stochastic,
+};
+
+pub use annealing::Annealing;
+pub use force::Force;
+pub use gradient::Gradient;
+use spectral::{Match, Rings};
+pub use spectral::{Residual, Spectral, Stage, Weights};
+
+/// The range of frequencies, in √n, over which results are compared with their target.
+const MEASURED: f64 = 6.0;
+
+/// How point sets are matched to a spectrum.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
+pub enum Algorithm {
+    /// The periodogram's ring means by L-BFGS: the fastest and most accurate.
+    Spectral(Spectral),
+    /// The thesis's: forces from the difference of the RDFs.
+    Force(Force),
+    /// Gradient descent on the pair correlation (Zhou et al. 2012).
+    Gradient(Gradient),
+    /// Simulated annealing of the pair correlation (Rintoul and Torquato 1997).
+    Annealing(Annealing),
+}
+
+impl Default for Algorithm {
+    fn default() -> Self {
+        Self::Spectral(Spectral::default())
+    }
+}
+
+impl Algorithm {
+    /// The names of all algorithms, the default first.
+    pub const NAMES: &'static [&'static str] = &["spectral", "force", "gradient", "annealing"];
+
+    /// The algorithm of this name with its defaults.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "spectral" => Some(Self::default()),
+            "force" => Some(Self::Force(Force::default())),
+            "gradient" => Some(Self::Gradient(Gradient::default())),
+            "annealing" => Some(Self::Annealing(Annealing::default())),
+            _ => None,
+        }
+    }
+
+    /// The same with at most this many iterations, in all stages together where there are several.
+    #[must_use]
+    pub fn with_iterations(mut self, iterations: u32) -> Self {
+        match &mut self {
+            Self::Spectral(spectral) => spectral.limit(iterations),
+            Self::Force(force) => force.iterations = iterations,
+            Self::Gradient(gradient) => gradient.iterations = iterations,
+            Self::Annealing(annealing) => annealing.iterations = iterations,
+        }
+        self
+    }
+}
+
+/// What a search made.
+struct Outcome {
+    points: Vec<DVec2>,
+    iterations: u32,
+    converged: bool,
+}
+
+/// Point sets with the power spectrum of a [`Target`], as nearly as `algorithm` comes to it from
+/// random points or from `start`.
+///
+/// Never refuses a target: the report's `residual` says how near the result is, as the root mean
+/// square of its ring means less the target over all modes up to 6√n; `empty_power` is the mean power
+/// where the target has none.
+///
+/// ```
+/// use bn_core::{Density, Seed, Unobserved};
+/// use bn_samplers::{Algorithm, FigureValue, Sampler as _, SpectrumMatching};
+/// use bn_spectral::Target;
+///
+/// let step = Target::step(Density::new(256), 8.0)?;
+/// let matching = SpectrumMatching::new(step, Algorithm::default());
+/// let sample = matching.sample(256, Seed::new(1), &Unobserved)?;
+/// let Some(FigureValue::Real(residual)) = sample.report.get("residual") else { panic!() };
+/// assert!(residual < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpectrumMatching {
+    /// What to match, at the density of the points to make.
+    pub target: Target,
+    /// How.
+    pub algorithm: Algorithm,
+    /// Where to begin; random points if there is nothing.
+    pub start: Option<PointSet>,
+}
+
+impl SpectrumMatching {
+    /// The matching from random points.
+    pub fn new(target: Target, algorithm: Algorithm) -> Self {
+        Self { target, algorithm, start: None }
+    }
+
+    /// How far `set` is from the target over frequencies up to 6√n.
+    ///
+    /// # Errors
+    /// If the set is so large that its spectrum can't be had.
+    pub fn residual(&self, set: &PointSet) -> Result<Residual, SampleError> {
+        let limit = spectral::max_frequency(MEASURED, set.len());
+        let rings = Rings::new(&self.target, limit, Weights::ATTAINABLE);
+        let mut measure = spectral::plan(Match::<f32>::new(rings, set.len(), spectral::TOLERANCE))?;
+        Ok(measure.residual_of(set.points()))
+    }
+}
+
+impl Sampler for SpectrumMatching {
+    fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
+        check_count("spectrum matching", n)?;
+        let wanted = self.target.density().points_per_unit_area();
+        let start = match &self.start {
+            Some(start) => start.clone(),
+            None => Stochastic::default().sample(n, seed, observer)?.points,
+        };
+        if wanted != n as f64 || start.len() != n {
+            return Err(SampleError::InvalidCount {
+                method: "spectrum matching",
+                n,
+                need: "as many as its target and its starting points are for",
+                nearest: wanted as usize,
+            });
+        }
+        let outcome = match &self.algorithm {
+            Algorithm::Spectral(spectral) => spectral.run(&self.target, &start, observer)?,
+            Algorithm::Force(force) => force.run(&self.target, &start, observer)?,
+            Algorithm::Gradient(gradient) => gradient.run(&self.target, &start, observer)?,
+            Algorithm::Annealing(annealing) => {
+                annealing.run(&self.target, &start, seed, observer)?
+            }
+        };
+        let points = PointSet::new(outcome.points).expect("algorithms wrap what they move");
+        let residual = self.residual(&points)?;
+        let report = Report::new()
+            .with("iterations", u64::from(outcome.iterations))
+            .with("residual", residual.rms)
+            .with("empty_power", residual.empty_power)
+            .with("converged", outcome.converged);
+        Ok(Sample { points, report })
+    }
+}
+
+/// The option that chooses the algorithm.
+const ALGORITHM: OptionSpec = OptionSpec {
+    name: "algorithm",
+    kind: OptionKind::Choice(Algorithm::NAMES),
+    default: DefaultValue::Value("spectral"),
+    help: "how to come near the spectrum",
+    unit: "",
+};
+
+/// The option that bounds the work.
+const ITERATIONS: OptionSpec = OptionSpec {
+    name: "iterations",
+    kind: OptionKind::Integer { min: 0, max: 1_000_000 },
+    default: DefaultValue::Absent("until it stops paying"),
+    help: "the most iterations",
+    unit: "",
+};
+
+/// The algorithm that [`ALGORITHM`] and [`ITERATIONS`] ask for.
+fn chosen_algorithm(options: &OptionValues) -> Algorithm {
+    let named = options.choice(ALGORITHM.name).and_then(Algorithm::named).unwrap_or_default();
+    match options.integer(ITERATIONS.name) {
+        // The option's range ends below 2³².
+        Some(iterations) => named.with_iterations(iterations as u32),
+        None => named,
+    }
+}
+
+/// The error for a target that can't be made from these options.
+fn invalid_target(option: &'static str, error: &bn_spectral::TargetError) -> SampleError {
+    SampleError::InvalidOption { option, reason: error.to_string() }
+}
+
+/// An option that is a frequency or a power times a frequency.
+const fn frequency(name: &'static str, default: &'static str, help: &'static str) -> OptionSpec {
+    OptionSpec {
+        name,
+        kind: OptionKind::Real { min: 0.0, max: 1e9 },
+        default: DefaultValue::Absent(default),
+        help,
+        unit: "cycles per unit",
+    }
+}
