@@ -24,6 +24,7 @@
 
 mod best_candidate;
 mod bucket_grid;
+mod capacity;
 mod digits;
 mod error;
 mod farthest_point_optimization;
@@ -50,6 +51,7 @@ mod spectrum_matching;
 mod stochastic;
 
 pub use best_candidate::BestCandidate;
+pub use capacity::cccvt::Cccvt;
 pub use error::SampleError;
 pub use farthest_point_optimization::{FarthestPointOptimization, FpoStart, FpoUntil, FpoVariant};
 pub use farthest_point_strategy::FarthestPointStrategy;

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::capacity::cccvt;
 use crate::names::nearest_name;
 use crate::particles::{electrostatic, kernel_density};
 use crate::poisson_disk::{dart_throwing, maximal};
@@ -24,6 +25,7 @@ pub const METHODS: &[&Method] = &[
     &farthest_point_strategy::METHOD,
     &kernel_density::METHOD,
     &electrostatic::METHOD,
+    &cccvt::METHOD,
     &lloyd::METHOD,
     &net::METHOD,
     &regular::METHOD,
