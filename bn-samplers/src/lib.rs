@@ -51,6 +51,7 @@ mod spectrum_matching;
 mod stochastic;
 
 pub use best_candidate::BestCandidate;
+pub use capacity::bnot::Bnot;
 pub use capacity::cccvt::Cccvt;
 pub use error::SampleError;
 pub use farthest_point_optimization::{FarthestPointOptimization, FpoStart, FpoUntil, FpoVariant};

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::capacity::cccvt;
+use crate::capacity::{bnot, cccvt};
 use crate::names::nearest_name;
 use crate::particles::{electrostatic, kernel_density};
 use crate::poisson_disk::{dart_throwing, maximal};
@@ -36,6 +36,7 @@ pub const METHODS: &[&Method] = &[
     &halton::METHOD,
     &sobol::METHOD,
     &r2::METHOD,
+    &bnot::METHOD,
 ];
 
 /// There is no method of this name.

@@ -276,6 +276,7 @@ const GOLDEN: &[Golden] = &[
     ("fpo", 1, &[], 0xbf79_b979_567b_3403),
     ("fpo", 1, &[("variant", "global")], 0x757c_f697_d9d6_9d67),
     ("fpo", 1, &[("variant", "local"), ("iterations", "20")], 0xd457_f971_8e30_806d),
+    ("bnot", 1, &[], 0x562a_2627_b116_acff),
     ("cccvt", 1, &[], 0x8e3c_5e6e_b458_a543),
     ("lloyd", 1, &[("iterations", "50")], 0xdddf_a785_8951_6880),
     ("net", 1, &[], 0xcc75_e36f_cd1d_4505),

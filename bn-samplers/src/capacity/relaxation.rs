@@ -1,7 +1,12 @@
 //! Points on their way to the centroids of cells of equal area.
 
-use bn_core::{CellGrid, DVec2, Density, NormalizedDistance, PointSet, torus};
+use bn_core::{CellGrid, DVec2, Density, NormalizedDistance, PointSet, StreamRng, torus};
 use bn_geometry::{Balance, BalancedDiagram};
+
+use super::regularity;
+
+/// A line search gives up after so many halvings: the slope is rounding by then.
+const MOST_HALVINGS: u32 = 20;
 
 /// Points and the power diagram in which each has the same area, between one move and the next.
 pub(super) struct Relaxation {
@@ -11,6 +16,9 @@ pub(super) struct Relaxation {
     order: Vec<u32>,
     balanced: BalancedDiagram,
 }
+
+/// Areas need to be no better than this, relative to 1/n, for centroids to move towards.
+pub(super) const LOOSE: f64 = 1e-3;
 
 /// The most Newton steps for one diagram; five are rarely needed.
 const MOST_STEPS: u32 = 100;
@@ -49,6 +57,44 @@ impl Relaxation {
         let moved = self.points.points().iter().zip(cells);
         let moved = moved.map(|(p, cell)| torus::wrap_point(*p + cell.to_centroid * part));
         self.points = PointSet::new(moved.collect()).expect("wrapped points are on the torus");
+    }
+
+    /// Moves the points towards the centroids, `longest` times their way or a half, a quarter … of
+    /// that: the first at which the energy falls by a tenth of what the slope promises, areas
+    /// being balanced to `tolerance`. False, and nothing moved, if there is no such step.
+    pub(super) fn descend(&mut self, longest: f64, tolerance: f64) -> bool {
+        let from = self.points.points().to_vec();
+        let cells = self.balanced.diagram().cells();
+        let ways: Vec<DVec2> = cells.iter().map(|cell| cell.to_centroid).collect();
+        // The gradient of n·Σ ∫ |x − p|² is −2 times the way to the centroid.
+        let slope: f64 = ways.iter().map(|way| -2.0 * way.length_squared()).sum();
+        let energy = self.energy();
+        let mut part = longest;
+        for _ in 0..MOST_HALVINGS {
+            let moved = from.iter().zip(&ways).map(|(p, way)| torus::wrap_point(*p + *way * part));
+            self.points = PointSet::new(moved.collect()).expect("wrapped points are on the torus");
+            self.balance(tolerance);
+            if self.energy() <= energy + 0.1 * part * slope {
+                return true;
+            }
+            part *= 0.5;
+        }
+        self.points = PointSet::new(from).expect("where the points were");
+        self.balance(tolerance);
+        false
+    }
+
+    /// The places in the list of points whose cells have the shape of those around; see
+    /// [`regularity::regular_points`].
+    pub(super) fn regular_points(&self, threshold: f64) -> Vec<usize> {
+        regularity::regular_points(self.balanced.diagram(), threshold)
+    }
+
+    /// Disturbs these points and their neighbours; see [`regularity::break_up`].
+    pub(super) fn break_up(&mut self, regular: &[usize], rng: &mut StreamRng) {
+        let mut points = self.points.points().to_vec();
+        regularity::break_up(&mut points, self.balanced.diagram(), regular, rng);
+        self.points = PointSet::new(points).expect("wrapped points are on the torus");
     }
 
     /// The points in the caller's order.
