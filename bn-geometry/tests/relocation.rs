@@ -100,4 +100,24 @@ proptest! {
         let fresh = Triangulation::new(&set(&points));
         prop_assert_eq!(canonical_faces(&triangulation), canonical_faces(&fresh));
     }
+
+    #[test]
+    fn all_points_can_move_at_once(
+        points in point_family(), seed in any::<u64>(), reach in prop_oneof![Just(0.0), Just(1e-15), Just(1e-3), Just(0.02), Just(0.3)]
+    ) {
+        let mut rng = Seed::new(seed).stream(0);
+        let mut triangulation = Triangulation::new(&set(&points));
+        let mut points = points;
+        for _ in 0..5 {
+            let ways: Vec<_> =
+                points.iter().map(|_| at(rng.random::<f64>() - 0.5, rng.random::<f64>() - 0.5) * reach).collect();
+            points = (0..points.len())
+                .map(|i| torus::wrap_point(triangulation.position(i) + ways[triangulation.representative(i)]))
+                .collect();
+            triangulation.relocate_all(|i, p| torus::wrap_point(p + ways[i]));
+            assert_delaunay(&triangulation, &numbered(&points));
+            let fresh = Triangulation::new(&set(&points));
+            prop_assert_eq!(canonical_faces(&triangulation), canonical_faces(&fresh));
+        }
+    }
 }

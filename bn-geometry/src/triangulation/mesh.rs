@@ -17,6 +17,8 @@ pub struct Scratch {
     /// Parts of a polygon by their first and last corners.
     pub(super) spans: Vec<(usize, usize)>,
     pub(super) suspects: Vec<Edge>,
+    /// Vertices that cross the seam, and which way.
+    pub(super) crossings: Vec<(u32, Shift)>,
 }
 
 /// A vertex, or room for one. Half a cache line.

@@ -3,6 +3,7 @@
 use bn_core::{DVec2, torus};
 
 use super::Triangulation;
+use super::build::build;
 use super::face::{Edge, FaceId, Frame, NONE, Shift, next, previous};
 use super::mesh::{Mesh, Scratch};
 use super::polygon::StarPolygon;
@@ -25,6 +26,35 @@ impl Triangulation {
         if !(is_ready && self.mesh.shift_vertex(vertex, snap(p), scratch)) {
             self.relocate_far(index, p);
         }
+    }
+
+    /// Moves all points at once, each to `place(index, position)`: the same as building the
+    /// triangulation of the new places, and much faster where neighbours stay neighbours. Points
+    /// that share a place move together, as their representative says.
+    ///
+    /// # Panics
+    /// If a place is not in [0, 1)².
+    pub fn relocate_all(&mut self, mut place: impl FnMut(usize, DVec2) -> DVec2) {
+        let scratch = &mut self.scratch;
+        scratch.star.center = NONE;
+        if !self.mesh.shift_all(&mut place, scratch) {
+            self.rebuild();
+        }
+    }
+
+    /// Builds everything anew from the places of the points.
+    #[cold]
+    fn rebuild(&mut self) {
+        let (mut numbers, mut places) = (Vec::new(), Vec::new());
+        for index in (0..self.index_bound()).filter(|&index| self.contains(index)) {
+            numbers.push(index as u32);
+            places.push(self.position(index));
+        }
+        let former_faces = self.mesh.faces.len() as u32;
+        (self.mesh, self.coincidences) = build(&places, |i| numbers[i as usize]);
+        self.hints.rebuild(&self.mesh);
+        let faces = former_faces.max(self.mesh.faces.len() as u32);
+        self.mesh.changed.extend((0..faces).map(FaceId));
     }
 
     /// Takes the point out and adds it again.
@@ -70,6 +100,84 @@ impl Mesh {
             self.restore_delaunay(suspects);
         }
         true
+    }
+
+    /// Moves every vertex to `place(vertex, position)`; false if a face does not turn
+    /// counter-clockwise any more, or if so much changes that building anew is as fast: then places
+    /// are right but nothing else is.
+    fn shift_all(
+        &mut self,
+        place: &mut impl FnMut(usize, DVec2) -> DVec2,
+        scratch: &mut Scratch,
+    ) -> bool {
+        let Scratch { suspects, crossings, .. } = scratch;
+        crossings.clear();
+        for (number, vertex) in self.vertices.iter_mut().enumerate() {
+            if !vertex.is_present() {
+                continue;
+            }
+            let p = place(number, vertex.position);
+            assert!(torus::contains(p), "{p} is not in [0, 1)²");
+            let p = snap(p);
+            let shift = vertex.position + torus::delta(vertex.position, p) - p;
+            vertex.position = p;
+            if shift != DVec2::ZERO {
+                let (x, y) = (shift.x as i8, shift.y as i8);
+                crossings.push((number as u32, Shift { x, y }));
+            }
+        }
+        for &(vertex, shift) in crossings.iter() {
+            self.cross_seam(vertex, shift);
+        }
+        suspects.clear();
+        self.changed.clear();
+        if !self.list_all_illegal(suspects) {
+            return false;
+        }
+        self.restore_delaunay(suspects);
+        true
+    }
+
+    /// The faces at `vertex` connect the copy of it that is farther by `shift` than before.
+    fn cross_seam(&mut self, vertex: u32, shift: Shift) {
+        let first = self.outgoing(vertex);
+        let mut e = first;
+        loop {
+            let face = &mut self.faces[e.face() as usize];
+            let mut shifts = [0, 1, 2].map(|corner| face.frame().shift(corner));
+            // A face that touches the vertex with several corners is met as often.
+            shifts[e.corner()] = shifts[e.corner()].plus(shift);
+            face.set_frame(Frame::new(shifts));
+            e = self.turn(e);
+            if e == first {
+                break;
+            }
+        }
+    }
+
+    /// Lists all edges that are not Delaunay, and all faces as changed; false if a face does not
+    /// turn counter-clockwise, or if more than a quarter of the edges are listed.
+    fn list_all_illegal(&mut self, suspects: &mut Vec<Edge>) -> bool {
+        for id in 0..self.faces.len() as u32 {
+            let face = &self.faces[id as usize];
+            if !face.is_alive() {
+                continue;
+            }
+            let [a, b, c] = self.corners(face);
+            if cross(b - a, c - a) <= 0.0 {
+                return false;
+            }
+            self.changed.push(FaceId(id));
+        }
+        for &FaceId(id) in &self.changed {
+            for corner in 0..3 {
+                let e = Edge::new(id, corner);
+                if e.0 < self.twin(e).0 && self.is_illegal(e) {
+                    suspects.push(e);
+                }
+            }
+        }
+        suspects.len() <= 3 * self.vertex_count() / 4
     }
 
     /// The faces around `vertex` connect the copy of it that is farther by `shift` than before.
