@@ -26,17 +26,11 @@ pub(super) fn cargo_output(arguments: &[&str]) -> Outcome<Vec<u8>> {
 
 /// Runs `command`, stopping it after `limit`.
 pub(super) fn run(command: &mut Command, limit: Duration, name: &str) -> Outcome {
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(command, 0);
     let mut child =
         command.spawn().with_context(|| format!("cannot run {name}")).map_err(Failure::failed)?;
     if let Some(status) = wait(&mut child, limit)? {
         return succeed(Ok(status), || name.to_owned());
     }
-    // All of a pipeline, not only the shell that started it.
-    #[cfg(unix)]
-    Command::new("kill").args(["-KILL", &format!("-{}", child.id())]).status()?;
-    #[cfg(not(unix))]
     child.kill()?;
     child.wait()?;
     Err(Failure::failed(anyhow!("{name} was stopped after {} s", limit.as_secs())))
