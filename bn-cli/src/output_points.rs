@@ -35,7 +35,7 @@ pub fn write(path: &Path, format: Option<Format>, sets: &[PointSet]) -> Outcome 
 /// folder that isn't there, several sets where one fits.
 ///
 /// # Errors
-/// If [`write`] of so many sets would fail for any of these.
+/// If [`write()`] of so many sets would fail for any of these.
 pub fn check(path: &Path, format: Option<Format>, sets: usize) -> Outcome {
     let format = choose(path, format, sets)?;
     if path.as_os_str() == "-" {
