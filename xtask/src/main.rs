@@ -1,7 +1,8 @@
-//! The project's own tasks: `cargo xtask tables`, `bench` and `ci`.
+//! The project's own tasks: `cargo xtask tables`, `figures`, `bench` and `ci`.
 
 mod bench;
 mod ci;
+mod figures;
 mod markdown;
 mod measure;
 mod tables;
@@ -28,6 +29,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Task {
     Tables(tables::TablesArgs),
+    Figures(figures::FiguresArgs),
     Bench(bench::BenchArgs),
     Ci(ci::CiArgs),
 }
@@ -60,6 +62,7 @@ fn run(cli: &Cli) -> Outcome {
     }
     match &cli.task {
         Task::Tables(args) => tables::run(args),
+        Task::Figures(args) => figures::run(args),
         Task::Bench(args) => bench::run(args),
         Task::Ci(args) => ci::run(args),
     }

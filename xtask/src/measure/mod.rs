@@ -1,6 +1,7 @@
 //! Point sets and their statistics, each made and measured once a run whatever tables ask for it.
 
 mod curves;
+pub(crate) mod make;
 mod store;
 pub(crate) mod trace;
 
@@ -10,11 +11,9 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Instant;
 
+use bn_cli::Outcome;
 use bn_cli::analysis::{Analysis, Estimate};
-use bn_cli::{Failure, Outcome};
-use bn_core::{PointSet, Seed, Unobserved};
-use bn_samplers::{Method, SampleError};
-use rayon::prelude::*;
+use bn_samplers::Method;
 
 use crate::thesis::{Quantity, RowSpec};
 pub(crate) use store::Store;
@@ -85,7 +84,7 @@ impl Workbench {
 
     fn measure_method(&self, row: &RowSpec, method: &'static Method) -> Outcome<Measured> {
         let start = Instant::now();
-        let (sets, made) = match self.sets(row, method)? {
+        let (sets, made) = match make::sets(row, method, self.plan, self.store.as_ref())? {
             Ok(sets) => sets,
             Err(error) => return Ok(Measured::Failed(error.to_string())),
         };
@@ -108,37 +107,5 @@ impl Workbench {
             row.method
         );
         Ok(Measured::Values(values))
-    }
-
-    /// The row's sets and how many of them had to be made. One is enough where no seed matters.
-    fn sets(
-        &self,
-        row: &RowSpec,
-        method: &'static Method,
-    ) -> Outcome<Result<(Vec<PointSet>, usize), SampleError>> {
-        let options = row.options.iter().map(|(name, value)| (&**name, &**value));
-        let sampler = method.with_options(options).map_err(Failure::usage)?;
-        let (plan, store) = (self.plan, self.store.as_ref());
-        let sets = if method.seeded { plan.sets } else { 1 };
-        let one = |set: u32| {
-            let place = store.map(|store| store.place(method, row, plan, set));
-            if let Some(points) = place.as_ref().and_then(store::Place::read) {
-                return Ok(Ok((points, 0)));
-            }
-            let seed = Seed::new(plan.seed).for_set(set);
-            let points = match sampler.sample(plan.n, seed, &Unobserved) {
-                Ok(sample) => sample.points,
-                Err(error) => return Ok(Err(error)),
-            };
-            if let Some(place) = place {
-                place.write(&points)?;
-            }
-            Ok(Ok((points, 1)))
-        };
-        let results: Outcome<Vec<_>> = (0..sets).into_par_iter().map(one).collect();
-        Ok(results?.into_iter().collect::<Result<Vec<_>, _>>().map(|results| {
-            let made = results.iter().map(|(_, made)| made).sum();
-            (results.into_iter().map(|(points, _)| points).collect(), made)
-        }))
     }
 }

@@ -10,7 +10,11 @@ use crate::thesis::{Judgement, Verdict};
 /// The table with a heading, its values, the reasons for what differs, and the options used.
 pub(super) fn render(table: &Table, plan: Plan) -> String {
     let mut text = format!("## {}: {}\n\n", heading(table.id), table.title);
-    let _ = writeln!(text, "{} sets of {} points, seed {}.\n", plan.sets, plan.n, plan.seed);
+    let _ = writeln!(
+        text,
+        "{} sets of {} points, seed {}; one set where no seed matters.\n",
+        plan.sets, plan.n, plan.seed
+    );
     let mut reasons = Vec::new();
     let mut grid = Grid::new(&[
         ("method", Align::Left),
@@ -147,7 +151,7 @@ mod tests {
         assert_eq!(lines.len(), 6, "{text}");
         let width = lines[0].chars().count();
         assert!(lines.iter().all(|line| line.chars().count() == width), "{text}");
-        assert!(text.starts_with("## Table 4.2: a test\n\n10 sets of 4096 points, seed 1.\n"));
+        assert!(text.starts_with("## Table 4.2: a test\n\n10 sets of 4096 points, seed 1; one set where no seed matters.\n"));
         assert!(lines[3].contains("explained [1]") && lines[3].contains("1.07"), "{text}");
         assert!(lines[4].contains("OUTSIDE [2]") && lines[5].contains("OUTSIDE [2]"), "{text}");
         assert!(text.contains("[2] Regular (square) grid: no square\n"), "{text}");

@@ -1,0 +1,95 @@
+//! `cargo xtask figures`: the thesis's figures, drawn from our own points.
+
+mod pages;
+mod studio;
+
+use std::time::Instant;
+
+use bn_cli::{Failure, Outcome};
+use clap::Args;
+
+use crate::workspace;
+use studio::Studio;
+
+/// A figure, or several that are drawn from the same data.
+pub(crate) struct FigureSpec {
+    /// Its number in the thesis, or a word for one that the thesis hasn't: the stem of its files.
+    id: &'static str,
+    title: &'static str,
+    draw: fn(&Studio) -> Outcome,
+}
+
+/// All figures, in the thesis's order; one file a family.
+static FIGURES: [&[FigureSpec]; 1] = [pages::FIGURES];
+
+/// The thesis's figures as SVG files (pictures as PNG) under target/thesis/figures/
+#[derive(Debug, Args)]
+pub(crate) struct FiguresArgs {
+    /// Only these figures, by number or word (may be repeated)
+    #[arg(long, value_name = "FIGURE")]
+    only: Vec<String>,
+    /// Names the figures and draws none
+    #[arg(long, conflicts_with_all = ["only", "quick"])]
+    list: bool,
+    /// Fewer points and sets: whether the figures are drawn, not what they show
+    #[arg(long)]
+    quick: bool,
+}
+
+pub(crate) fn run(args: &FiguresArgs) -> Outcome {
+    let figures = select(&args.only)?;
+    if args.list {
+        return bn_cli::output::write_stdout(|w| {
+            figures.iter().try_for_each(|f| writeln!(w, "{:<8} {}", f.id, f.title))?;
+            Ok(())
+        });
+    }
+    let folder = workspace::root()?.join("target/thesis");
+    for figure in figures {
+        let start = Instant::now();
+        (figure.draw)(&Studio::new(&folder, figure.id, args.quick)?)?;
+        eprintln!(
+            "figure {}: {:.1} s ({})",
+            figure.id,
+            start.elapsed().as_secs_f64(),
+            figure.title
+        );
+    }
+    Ok(())
+}
+
+/// The figures asked for; all if none is named.
+fn select(only: &[String]) -> Outcome<Vec<&'static FigureSpec>> {
+    let all = || FIGURES.iter().copied().flatten();
+    if only.is_empty() {
+        return Ok(all().collect());
+    }
+    let find = |name: &String| {
+        all().find(|figure| figure.id.eq_ignore_ascii_case(name)).ok_or_else(|| {
+            let known: Vec<_> = all().map(|figure| figure.id).collect();
+            Failure::misuse(format!("no figure {name}; there are {}", known.join(", ")))
+        })
+    };
+    only.iter().map(find).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_selected_by_name() {
+        let count = FIGURES.iter().map(|family| family.len()).sum::<usize>();
+        assert_eq!(select(&[]).expect("all").len(), count);
+        let error = select(&["9.9".to_owned()]).err().expect("unknown");
+        assert_eq!(error.code(), Failure::USAGE);
+        for (i, figure) in select(&[]).expect("all").iter().enumerate() {
+            assert_eq!(
+                select(&[]).expect("all").iter().position(|other| other.id == figure.id),
+                Some(i),
+                "two figures named {}",
+                figure.id
+            );
+        }
+    }
+}
