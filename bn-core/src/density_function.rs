@@ -192,6 +192,20 @@ impl DensityFunction {
         self.values[row * self.width + column]
     }
 
+    /// The density whose pixels are in proportion to `value` of this one's.
+    ///
+    /// # Errors
+    /// As [`DensityFunction::from_raster`].
+    pub fn map(&self, value: impl Fn(f64) -> f64) -> Result<Self, DensityFunctionError> {
+        let values = self.values.iter().map(|&density| value(density)).collect();
+        Self::from_raster(self.width, self.height, values)
+    }
+
+    /// Whether it is the same everywhere.
+    pub fn is_uniform(&self) -> bool {
+        self.values.iter().all(|&density| density == self.max)
+    }
+
     /// The largest density.
     pub fn max(&self) -> f64 {
         self.max

@@ -3,7 +3,7 @@
 //! The domain is the unit square [0, 1)² with opposite sides identified. A [`PointSet`] can only
 //! hold points of that domain, an [`Ensemble`] several sets; [`torus`] measures distances on it,
 //! [`Density`] knows the length and frequency that results are normalised by, [`DensityFunction`]
-//! says where points are wanted how densely, [`CellGrid`] answers neighbour queries, [`Curve`] holds a sampled function, [`Seed`] gives independent random
+//! says where points are wanted how densely ([`DensityIntegrals`] how many an area holds), [`CellGrid`] answers neighbour queries, [`Curve`] holds a sampled function, [`Seed`] gives independent random
 //! streams that are the same on every machine, and [`io`] reads and writes point files.
 //!
 //! ```
@@ -22,6 +22,7 @@ mod cell_grid;
 mod curve;
 mod density;
 mod density_function;
+mod density_integrals;
 pub mod io;
 mod point_set;
 mod progress;
@@ -32,6 +33,7 @@ pub use cell_grid::CellGrid;
 pub use curve::Curve;
 pub use density::{Density, NormalizedDistance, NormalizedFrequency};
 pub use density_function::{DensityFunction, DensityFunctionError};
+pub use density_integrals::{DensityIntegrals, Moments};
 pub use glam::DVec2;
 pub use point_set::{Ensemble, EnsembleError, PointSet, PointSetError};
 pub use progress::{Observer, Progress, Unobserved};

@@ -1,6 +1,6 @@
 //! Voronoi cells.
 
-use bn_core::DVec2;
+use bn_core::{DVec2, Moments};
 
 use crate::{Circle, Face, Triangulation};
 
@@ -22,7 +22,20 @@ pub struct VoronoiCell {
 impl VoronoiCell {
     /// The cell of no area.
     pub const EMPTY: Self = Self { area: 0.0, to_centroid: DVec2::ZERO, second_moment: 0.0 };
+
+    /// The cell by the moments of a density about its point: [`VoronoiCell::EMPTY`] where there is no mass,
+    /// or no more than rounding.
+    pub fn of_moments(moments: &Moments) -> Self {
+        let Moments { mass, first, second } = *moments;
+        if mass <= MASSLESS {
+            return Self::EMPTY;
+        }
+        Self { area: mass, to_centroid: first / mass, second_moment: second }
+    }
 }
+
+/// Masses below this are the rounding of sums.
+const MASSLESS: f64 = 1e-14;
 
 /// The cells of all points, by index up to the largest one; empty where there is no point.
 ///

@@ -3,11 +3,12 @@
 use bn_core::{DVec2, Observer, Seed};
 use rand::Rng;
 
+use crate::common_options::START;
 use crate::digits::{permuted_radical_inverse, radical_inverse};
-use crate::placing::{START, begin_placing, start};
+use crate::placing::place_sequence;
 use crate::{
-    CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
-    SampleError, Sampler,
+    CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Sample, SampleError,
+    Sampler,
 };
 
 /// Points (φ₂(i), φ₃(i)) for i from `start`: radical inverses, the digits of i mirrored at the
@@ -48,7 +49,7 @@ pub(crate) const METHOD: Method = Method {
     ],
     build: |options| {
         Ok(Box::new(Halton {
-            start: start(options),
+            start: options.count(START.name),
             scramble: options.choice("scramble") == Some("owen"),
         }))
     },
@@ -57,20 +58,16 @@ pub(crate) const METHOD: Method = Method {
 
 impl Sampler for Halton {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
-        let mut points = begin_placing(METHOD.name, n, observer)?;
-        let indices = (u64::from(self.start)..).take(n);
-        if self.scramble {
-            let mut rng = seed.stream(0);
-            let keys = [rng.next_u64(), rng.next_u64()];
-            let point = |i| {
-                [(2, keys[0]), (3, keys[1])]
-                    .map(|(base, key)| permuted_radical_inverse(base, i, key))
-            };
-            points.extend(indices.map(|i| DVec2::from(point(i))));
-        } else {
-            points
-                .extend(indices.map(|i| DVec2::from([2, 3].map(|base| radical_inverse(base, i)))));
-        }
-        Ok(Sample::new(points, Report::new()))
+        let mut rng = seed.stream(0);
+        let keys = [(); 2].map(|()| self.scramble.then(|| rng.next_u64()));
+        let coordinate = |base, key: Option<u64>, i| {
+            key.map_or_else(
+                || radical_inverse(base, i),
+                |key| permuted_radical_inverse(base, i, key),
+            )
+        };
+        place_sequence(METHOD.name, n, self.start, observer, |i| {
+            DVec2::new(coordinate(2, keys[0], i), coordinate(3, keys[1], i))
+        })
     }
 }

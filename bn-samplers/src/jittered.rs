@@ -6,6 +6,7 @@ use bn_core::{DVec2, Observer, Progress, Seed, torus};
 use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
+use crate::common_options::check_range;
 use crate::error::{check_count, observe, reserve};
 use crate::{
     CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
@@ -74,13 +75,12 @@ pub(crate) const METHOD: Method = Method {
         },
     ],
     build: |options| {
-        let defaults = Jittered::default();
         Ok(Box::new(Jittered {
             distribution: match options.choice("distribution") {
                 Some("gaussian") => Displacement::Gaussian,
                 _ => Displacement::Uniform,
             },
-            width: options.real("width").unwrap_or(defaults.width),
+            width: options.number("width"),
         }))
     },
     version: 1,
@@ -92,10 +92,7 @@ const WIDEST: f64 = 1e6;
 impl Sampler for Jittered {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
         check_count(METHOD.name, n)?;
-        if !(0.0..=WIDEST).contains(&self.width) {
-            let reason = format!("{} is not a width from 0 to {WIDEST}", self.width);
-            return Err(SampleError::InvalidOption { option: "width", reason });
-        }
+        check_range("width", self.width, 0.0, WIDEST)?;
         observe(observer, &Progress::new("drawing", 0, Some(n as u64)))?;
         let mut points = reserve(n)?;
         points.resize(n, DVec2::ZERO);

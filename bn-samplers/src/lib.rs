@@ -25,6 +25,7 @@
 mod best_candidate;
 mod bucket_grid;
 mod capacity;
+mod common_options;
 mod digits;
 mod error;
 mod farthest_point_optimization;
@@ -62,7 +63,6 @@ pub use jittered::{Displacement, Jittered};
 pub use lloyd::Lloyd;
 pub use method::{CountRule, Method, PointOrder};
 pub use net::{Construction, Net};
-pub(crate) use options::DENSITY_OPTION;
 pub use options::{DefaultValue, Given, OptionError, OptionKind, OptionSpec, OptionValues};
 pub use particles::electrostatic::Electrostatic;
 pub use particles::kernel_density::KernelDensity;

@@ -103,15 +103,6 @@ impl fmt::Display for OptionKind {
     }
 }
 
-/// The option of every method that serves a density function.
-pub(crate) const DENSITY_OPTION: OptionSpec = OptionSpec {
-    name: "density",
-    kind: OptionKind::Density,
-    default: DefaultValue::Absent("uniform"),
-    help: "where the points are to be how dense",
-    unit: "",
-};
-
 /// Why texts don't make [`OptionValues`].
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]

@@ -3,7 +3,7 @@
 use bn_core::{DVec2, Observer, Progress};
 
 use crate::error::{check_count, observe, reserve};
-use crate::{DefaultValue, OptionKind, OptionSpec, OptionValues, SampleError};
+use crate::{Report, Sample, SampleError};
 
 /// An empty list with room for `n` points, once the count and the observer allow them.
 pub(crate) fn begin_placing(
@@ -27,16 +27,15 @@ pub(crate) fn between_counts(
     SampleError::InvalidCount { method, n, need, nearest }
 }
 
-/// The option of sequences that need not begin at their beginning.
-pub(crate) const START: OptionSpec = OptionSpec {
-    name: "start",
-    kind: OptionKind::Integer { min: 0, max: u32::MAX as u64 },
-    default: DefaultValue::Value("0"),
-    help: "index of the first point of the sequence",
-    unit: "",
-};
-
-/// The value of [`START`].
-pub(crate) fn start(options: &OptionValues) -> u32 {
-    options.integer(START.name).unwrap_or(0) as u32
+/// The pattern of the points `start`, `start` + 1, … of a sequence.
+pub(crate) fn place_sequence(
+    method: &'static str,
+    n: usize,
+    start: u32,
+    observer: &dyn Observer,
+    point: impl Fn(u64) -> DVec2,
+) -> Result<Sample, SampleError> {
+    let mut points = begin_placing(method, n, observer)?;
+    points.extend((u64::from(start)..).take(n).map(point));
+    Ok(Sample::new(points, Report::new()))
 }

@@ -3,10 +3,11 @@
 use bn_core::{DVec2, Observer, Seed};
 use rand::Rng;
 
-use crate::placing::{START, begin_placing, start};
+use crate::common_options::START;
+use crate::placing::place_sequence;
 use crate::{
-    CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
-    SampleError, Sampler,
+    CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Sample, SampleError,
+    Sampler,
 };
 
 /// Points (½ + i/g, ½ + i/g²) mod 1 for i from `start`, where g = 1.3247… solves g³ = g + 1.
@@ -42,7 +43,9 @@ pub(crate) const METHOD: Method = Method {
             unit: "",
         },
     ],
-    build: |options| Ok(Box::new(R2 { start: start(options), shift: options.flag("shift") })),
+    build: |options| {
+        Ok(Box::new(R2 { start: options.count(START.name), shift: options.flag("shift") }))
+    },
     version: 1,
 };
 
@@ -51,16 +54,15 @@ const STEP: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
 
 impl Sampler for R2 {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
-        let mut points = begin_placing(METHOD.name, n, observer)?;
         let mut rng = seed.stream(0);
         let origin = [(); 2].map(|()| if self.shift { rng.next_u64() } else { 1 << 63 });
         let coordinate = |axis: usize, i: u64| {
             let fixed = origin[axis].wrapping_add(STEP[axis].wrapping_mul(i));
             (fixed >> 11) as f64 / (1_u64 << 53) as f64
         };
-        let indices = (u64::from(self.start)..).take(n);
-        points.extend(indices.map(|i| DVec2::new(coordinate(0, i), coordinate(1, i))));
-        Ok(Sample::new(points, Report::new()))
+        place_sequence(METHOD.name, n, self.start, observer, |i| {
+            DVec2::new(coordinate(0, i), coordinate(1, i))
+        })
     }
 }
 

@@ -3,11 +3,12 @@
 use bn_core::{DVec2, Observer, Seed};
 use rand::Rng;
 
+use crate::common_options::START;
 use crate::digits::nested;
-use crate::placing::{START, begin_placing, start};
+use crate::placing::place_sequence;
 use crate::{
-    CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
-    SampleError, Sampler,
+    CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Sample, SampleError,
+    Sampler,
 };
 
 /// The first two dimensions of Sobol's sequence, in its natural order from index `start`: a
@@ -60,7 +61,7 @@ pub(crate) const METHOD: Method = Method {
     ],
     build: |options| {
         Ok(Box::new(Sobol {
-            start: start(options),
+            start: options.count(START.name),
             scramble: match options.choice("scramble") {
                 Some("xor") => Scramble::Xor,
                 Some("owen") => Scramble::Owen,
@@ -76,7 +77,6 @@ const DIGITS: u32 = f64::MANTISSA_DIGITS;
 
 impl Sampler for Sobol {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
-        let mut points = begin_placing(METHOD.name, n, observer)?;
         let mut rng = seed.stream(0);
         let keys = [rng.next_u64(), rng.next_u64()];
         let coordinate = |axis: usize, bits: u64| match self.scramble {
@@ -87,11 +87,10 @@ impl Sampler for Sobol {
             }
         };
         let directions = pascal_directions();
-        points.extend((u64::from(self.start)..).take(n).map(|i| {
+        place_sequence(METHOD.name, n, self.start, observer, |i| {
             let x = i.reverse_bits() >> (u64::BITS - DIGITS);
             DVec2::new(coordinate(0, x), coordinate(1, combine(&directions, i)))
-        }));
-        Ok(Sample::new(points, Report::new()))
+        })
     }
 }
 

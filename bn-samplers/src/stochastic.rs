@@ -6,8 +6,9 @@ use bn_core::{DVec2, DensityFunction, Observer, Progress, Seed};
 use rand::RngExt;
 use rayon::prelude::*;
 
+use crate::common_options::{DENSITY_OPTION, uneven};
 use crate::error::{check_count, observe, reserve};
-use crate::{CountRule, DENSITY_OPTION, Method, PointOrder, Report, Sample, SampleError, Sampler};
+use crate::{CountRule, Method, PointOrder, Report, Sample, SampleError, Sampler};
 
 /// Points drawn independently and uniformly: a Poisson process given its count, P(k) = 1.
 ///
@@ -43,7 +44,7 @@ impl Sampler for Stochastic {
         check_count(METHOD.name, n)?;
         observe(observer, &Progress::new("drawing", 0, Some(n as u64)))?;
         let mut points = uniform_points(n, seed, 0)?;
-        if let Some(density) = &self.density {
+        if let Some(density) = uneven(self.density.as_ref()) {
             points.par_iter_mut().for_each(|p| *p = density.place(*p));
         }
         Ok(Sample::new(points, Report::new()))

@@ -1,6 +1,8 @@
 //! Weights that give all cells the same area.
 
-use bn_core::PointSet;
+use std::sync::Arc;
+
+use bn_core::{DensityIntegrals, PointSet};
 
 use super::PowerDiagram;
 use super::laplacian::Laplacian;
@@ -60,6 +62,14 @@ const MOST_HALVINGS: u32 = 30;
 const ACCURACY: (f64, f64) = (1e-6, 0.02);
 
 impl BalancedDiagram {
+    /// A diagram, to be balanced, of cells of equal masses by this density.
+    ///
+    /// Newton's method needs mass on every edge: a density that is 0 somewhere should be raised a
+    /// little there.
+    pub fn of_density(density: Arc<DensityIntegrals>) -> Self {
+        Self { diagram: PowerDiagram::of_density(density), ..Self::default() }
+    }
+
     /// Balances the cells of `set` until no area is off by more than `tolerance` relative to 1/n,
     /// in at most `most_steps` Newton steps, from the weights of the last call if it had as many points.
     ///

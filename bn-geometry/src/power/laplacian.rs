@@ -12,7 +12,7 @@ const PARALLEL: usize = 8 * CHUNK;
 
 /// The matrix of ∂Aᵢ/∂wⱼ: how the areas of cells change with the weights.
 ///
-/// Off the diagonal −Σ length/(2 distance) over the edges between cells i and j, on it what makes
+/// Off the diagonal −Σ mass/(2 distance) over the edges between cells i and j, on it what makes
 /// the sum of each row 0: symmetric and positive semidefinite, singular for equal changes of all
 /// weights.
 #[derive(Clone, Debug, Default)]
@@ -49,7 +49,7 @@ impl Laplacian {
                 if j as usize == i || diagram.cells()[j as usize].area == 0.0 {
                     continue;
                 }
-                let value = 0.5 * edge.length / edge.neighbor.displacement.length();
+                let value = 0.5 * edge.mass / edge.neighbor.displacement.length();
                 self.columns.push(j);
                 self.values.push(value);
                 sum += value;

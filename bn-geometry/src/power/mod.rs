@@ -5,7 +5,9 @@ mod laplacian;
 mod polygon;
 mod search;
 
-use bn_core::{CellGrid, DVec2, PointSet};
+use std::sync::Arc;
+
+use bn_core::{CellGrid, DVec2, DensityIntegrals, PointSet};
 use rayon::prelude::*;
 
 use self::polygon::Polygon;
@@ -31,7 +33,7 @@ pub use self::balance::{Balance, BalancedDiagram};
 /// there are nearly parallel), edges below 1e-15 of a cell's size may be missing.
 ///
 /// Cost: O(n) for points spread evenly whose weights differ by no more than a few squared
-/// distances, some 0.5 µs a cell; O(n²) at worst, for points crowded into a small part of the torus.
+/// distances, some 2 µs a cell; O(n²) at worst, for points crowded into a small part of the torus.
 /// From 1024 points on rayon's threads share the work; the result does not depend on their number.
 ///
 /// ```
@@ -50,6 +52,8 @@ pub use self::balance::{Balance, BalancedDiagram};
 /// 1987.
 #[derive(Clone, Debug, Default)]
 pub struct PowerDiagram {
+    /// By which cells and edges are measured, evenly if there is none.
+    density: Option<Arc<DensityIntegrals>>,
     cells: Vec<VoronoiCell>,
     /// The edges of cells in chunks of [`CHUNK`].
     chunks: Vec<Chunk>,
@@ -75,6 +79,8 @@ pub struct PowerEdge {
     pub corner: DVec2,
     /// Its length.
     pub length: f64,
+    /// The density's integral along it: the length where the density is uniform.
+    pub mass: f64,
 }
 
 /// Cells that one task cuts.
@@ -105,6 +111,12 @@ impl PowerDiagram {
         diagram
     }
 
+    /// The diagram of no points, to be updated, whose cells are measured by a density: their areas are
+    /// masses, their centroids and moments those of the mass.
+    pub fn of_density(density: Arc<DensityIntegrals>) -> Self {
+        Self { density: Some(density), ..Self::default() }
+    }
+
     /// Makes this the diagram of other points and weights.
     ///
     /// As good as a new one, but faster where the points and weights are about the old ones: a cell
@@ -125,13 +137,15 @@ impl PowerDiagram {
         }
         let grid = CellGrid::new(set);
         let sites = Sites::new(set.points(), weights, &grid);
-        let tasks = self.chunks.iter_mut().zip(self.cells.chunks_mut(CHUNK)).enumerate();
+        let density = self.density.as_deref();
+        let cut = |(k, (chunk, cells)): (usize, (&mut Chunk, &mut [VoronoiCell]))| {
+            chunk.cut(&sites, density, k * CHUNK, cells);
+        };
         if n < PARALLEL {
-            tasks.for_each(|(k, (chunk, cells))| chunk.cut(&sites, k * CHUNK, cells));
+            self.chunks.iter_mut().zip(self.cells.chunks_mut(CHUNK)).enumerate().for_each(cut);
         } else {
-            let tasks =
-                self.chunks.par_iter_mut().zip(self.cells.par_chunks_mut(CHUNK)).enumerate();
-            tasks.for_each(|(k, (chunk, cells))| chunk.cut(&sites, k * CHUNK, cells));
+            let cells = self.cells.par_chunks_mut(CHUNK);
+            self.chunks.par_iter_mut().zip(cells).enumerate().for_each(cut);
         }
     }
 
@@ -145,7 +159,8 @@ impl PowerDiagram {
         self.cells.is_empty()
     }
 
-    /// The measures of the cells, by index of their points; [`VoronoiCell::EMPTY`] for hidden points.
+    /// The measures of the cells, by index of their points; [`VoronoiCell::EMPTY`] for hidden points, and
+    /// where there is no mass.
     pub fn cells(&self) -> &[VoronoiCell] {
         &self.cells
     }
@@ -160,7 +175,7 @@ impl PowerDiagram {
     }
 
     /// Σ ∫ |x − pᵢ|² over the cells: with the weights that give all cells the same area, the cost
-    /// of carrying the uniform distribution to the points at best. Added up in the order of the points.
+    /// of carrying the uniform distribution (or the density) to the points at best. Added up in the order of the points.
     pub fn transport_cost(&self) -> f64 {
         self.cells.iter().map(|cell| cell.second_moment).sum()
     }
@@ -173,7 +188,13 @@ impl Chunk {
     }
 
     /// Cuts the cells of the points from `first` on.
-    fn cut(&mut self, sites: &Sites, first: usize, cells: &mut [VoronoiCell]) {
+    fn cut(
+        &mut self,
+        sites: &Sites,
+        density: Option<&DensityIntegrals>,
+        first: usize,
+        cells: &mut [VoronoiCell],
+    ) {
         std::mem::swap(&mut self.edges, &mut self.old.0);
         std::mem::swap(&mut self.ends, &mut self.old.1);
         self.edges.clear();
@@ -184,14 +205,15 @@ impl Chunk {
             let former = &self.old.0[start..end];
             start = end;
             sites.cut_cell(first + i, former, &mut self.polygon);
-            *cell = self.polygon.measure();
-            if cell.area > 0.0 {
-                let edges = self.polygon.edges().map(|(corner, next)| PowerEdge {
-                    neighbor: corner.neighbor,
-                    corner: corner.at,
-                    length: (next - corner.at).length(),
-                });
-                self.edges.extend(edges);
+            let start_of_edges = self.edges.len();
+            *cell = match density {
+                None => self.polygon.measure(&mut self.edges),
+                Some(density) => {
+                    self.polygon.measure_mass(density, sites.place(first + i), &mut self.edges)
+                }
+            };
+            if cell.area == 0.0 {
+                self.edges.truncate(start_of_edges);
             }
             self.ends.push(self.edges.len() as u32);
         }

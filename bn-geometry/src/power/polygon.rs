@@ -1,8 +1,8 @@
 //! A convex polygon that half-planes cut smaller.
 
-use bn_core::DVec2;
+use bn_core::{DVec2, DensityIntegrals, Moments};
 
-use super::PowerNeighbor;
+use super::{PowerEdge, PowerNeighbor};
 use crate::VoronoiCell;
 
 /// Corners this close to a cutting line, relative to the polygon's size, lie on it: edges that are
@@ -163,16 +163,19 @@ impl Polygon {
     }
 
     /// The edges: corner, neighbour, next corner.
-    pub fn edges(&self) -> impl Iterator<Item = (Corner, DVec2)> {
+    fn edges(&self) -> impl Iterator<Item = (Corner, DVec2)> {
         let next = self.corners.iter().cycle().skip(1);
         self.corners.iter().zip(next).map(|(&corner, next)| (corner, next.at))
     }
 
-    /// Area, centroid and second moment about the site.
-    pub fn measure(&self) -> VoronoiCell {
+    /// Area, centroid and second moment about the site; adds the edges to the list.
+    pub fn measure(&self, edges: &mut Vec<PowerEdge>) -> VoronoiCell {
         let mut cell = VoronoiCell::EMPTY;
         for (corner, next) in self.edges() {
             cell.add_triangle(0.5 * corner.at.perp_dot(next), corner.at, next);
+            let length = (next - corner.at).length();
+            let Corner { at, neighbor } = corner;
+            edges.push(PowerEdge { neighbor, corner: at, length, mass: length });
         }
         if cell.area > 0.0 {
             cell.to_centroid /= cell.area;
@@ -180,5 +183,23 @@ impl Polygon {
         } else {
             VoronoiCell::EMPTY
         }
+    }
+
+    /// The same by a density around the site's place.
+    pub fn measure_mass(
+        &self,
+        density: &DensityIntegrals,
+        place: DVec2,
+        edges: &mut Vec<PowerEdge>,
+    ) -> VoronoiCell {
+        let mut moments = Moments::default();
+        for (corner, next) in self.edges() {
+            let (part, mass) = density.along(place, corner.at, next);
+            moments += part;
+            let length = (next - corner.at).length();
+            let Corner { at, neighbor } = corner;
+            edges.push(PowerEdge { neighbor, corner: at, length, mass });
+        }
+        VoronoiCell::of_moments(&moments)
     }
 }

@@ -35,6 +35,11 @@ impl<'a> Sites<'a> {
         Self { points, weights, grid, heaviest }
     }
 
+    /// Where point `index` is.
+    pub fn place(&self, index: usize) -> DVec2 {
+        self.points[index]
+    }
+
     /// Cuts the cell of point `index`, first by its `former` neighbours, which are likely to be its
     /// neighbours still.
     pub fn cut_cell(&self, index: usize, former: &[PowerEdge], polygon: &mut Polygon) {

@@ -1,13 +1,16 @@
 //! Capacity-constrained centroidal Voronoi tessellations.
 
-use bn_core::{NormalizedDistance, Observer, PointSet, Progress, Seed};
+use std::sync::Arc;
 
-use super::discrete::Assignment;
+use bn_core::{DensityFunction, NormalizedDistance, Observer, Progress, Seed};
+
 use super::relaxation::{LOOSE, Relaxation};
+use super::swapping;
+use crate::common_options::{DENSITY_OPTION, check_tolerance, iterations, tolerance, uneven};
 use crate::error::{check_count, observe};
 use crate::{
-    CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
-    SampleError, Sampler, Stochastic,
+    CountRule, DefaultValue, Method, OptionError, OptionKind, OptionSpec, PointOrder, Report,
+    Sample, SampleError, Sampler, Stochastic,
 };
 
 /// Random points, each moved to the centroid of its cell over and over, where the cells are those of
@@ -20,7 +23,7 @@ use crate::{
 /// the plane between points instead; it is there as `discrete`, with the acceleration of H. Li,
 /// D. Nehab, L.-Y. Wei, P. V. Sander and C.-W. Fu, "Fast capacity constrained Voronoi tessellation",
 /// I3D 2010 (nearby samples together from the start, only pairs of points in reach of each other,
-/// no heaps) and from coarse samples to fine ones.
+/// no heaps), from coarse samples to fine ones, and with points that swing around their centroids.
 ///
 /// Each iteration lowers the energy n·Σ ∫ |x − xⱼ|². The pattern's
 /// statistics are functions of how far that has gone: the default tolerance is where they are those
@@ -28,25 +31,29 @@ use crate::{
 ///
 /// Thesis p. 113; M. Balzer, T. Schlömer and O. Deussen, "Capacity-constrained point distributions: a
 /// variant of Lloyd's method", ACM Trans. Graph. 28(3), 2009. O(n^1.5) an iteration, for the
-/// linear systems; 4 ms at 4096 points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// linear systems; some 40 ms on one core at 4096 points.
+///
+/// With a density, the continuous method gives cells equal masses instead of equal areas.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Cccvt {
     /// The most iterations.
     pub iterations: u32,
     /// Stop when the root mean square distance of points to their cells' centroids is below this,
-    /// in the discrete method below a fifth of it.
+    /// in the discrete method below a tenth of it.
     pub tolerance: NormalizedDistance,
     /// Give each point samples of the plane by swaps, as the original method does, instead of a
     /// cell of the power diagram.
     pub discrete: bool,
     /// How many samples each point has then.
     pub samples_per_site: u32,
+    /// The density of the points, uniform if there is none; for the continuous method.
+    pub density: Option<Arc<DensityFunction>>,
 }
 
 impl Default for Cccvt {
     fn default() -> Self {
         let tolerance = NormalizedDistance::new(0.0108);
-        Self { iterations: 1000, tolerance, discrete: false, samples_per_site: 1024 }
+        Self { iterations: 1000, tolerance, discrete: false, samples_per_site: 1024, density: None }
     }
 }
 
@@ -62,20 +69,11 @@ pub(crate) const METHOD: Method = Method {
     counts: CountRule::Any,
     seeded: true,
     options: &[
-        OptionSpec {
-            name: "iterations",
-            kind: OptionKind::Integer { min: 0, max: 1_000_000 },
-            default: DefaultValue::Value("1000"),
-            help: "the most iterations",
-            unit: "",
-        },
-        OptionSpec {
-            name: "tolerance",
-            kind: OptionKind::Real { min: 0.0, max: 1.0 },
-            default: DefaultValue::Value("0.0108"),
-            help: "stop when points are nearer to their cells' centroids, root mean square",
-            unit: "d_hex",
-        },
+        iterations("1000"),
+        tolerance(
+            "0.0108",
+            "stop when points are nearer to their cells' centroids, root mean square",
+        ),
         OptionSpec {
             name: "discrete",
             kind: OptionKind::Flag,
@@ -90,40 +88,24 @@ pub(crate) const METHOD: Method = Method {
             help: "samples that each point has in the discrete method",
             unit: "",
         },
+        DENSITY_OPTION,
     ],
     build: |options| {
-        let defaults = Cccvt::default();
-        let iterations = options.integer("iterations");
-        let tolerance = options.real("tolerance").map(NormalizedDistance::new);
+        let density = options.density("density");
+        if options.flag("discrete") && density.is_some() {
+            let reason = "samples are spread evenly; leave out --discrete".to_owned();
+            return Err(OptionError::Conflict { option: "density", reason });
+        }
         Ok(Box::new(Cccvt {
-            // The option's range ends below 2³².
-            iterations: iterations.map_or(defaults.iterations, |count| count as u32),
-            tolerance: tolerance.unwrap_or(defaults.tolerance),
+            iterations: options.count("iterations"),
+            tolerance: options.distance("tolerance"),
             discrete: options.flag("discrete"),
-            samples_per_site: options
-                .integer("samples-per-site")
-                .map_or(defaults.samples_per_site, |count| count as u32),
+            samples_per_site: options.count("samples-per-site"),
+            density,
         }))
     },
-    version: 1,
+    version: 2,
 };
-
-/// Samples that the discrete method can swap, 16 GB of them.
-const MOST_SAMPLES: usize = 1 << 30;
-
-/// Points begin to move when fewer than one in so many samples is swapped in a sweep.
-const SETTLED: u64 = 100;
-
-/// The discrete method's tolerance over the continuous one's: samples hold the borders of cells
-/// in place until points have moved by a good part of a sample's width, so points are near their
-/// centroids long before cells have their shapes.
-const FINER: f64 = 0.2;
-
-/// Sweeps without moves at each number of samples, at most.
-const MOST_SWEEPS: u64 = 1000;
-
-/// Points have at least so many samples when swaps begin, unless there are fewer in all.
-const FEWEST: usize = 16;
 
 /// Areas are equal to this in the end, relative to 1/n.
 const EXACT: f64 = 1e-9;
@@ -131,19 +113,28 @@ const EXACT: f64 = 1e-9;
 impl Sampler for Cccvt {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
         check_count(METHOD.name, n)?;
-        if !(0.0..f64::INFINITY).contains(&self.tolerance.value()) {
-            let reason = format!("{} is not a distance", self.tolerance);
-            return Err(SampleError::InvalidOption { option: "tolerance", reason });
+        check_tolerance(self.tolerance)?;
+        let density = uneven(self.density.as_ref());
+        if self.discrete && density.is_some() {
+            let reason = "the discrete method spreads its samples evenly".to_owned();
+            return Err(SampleError::InvalidOption { option: "density", reason });
         }
-        let start = Stochastic::default().sample(n, seed, observer)?.points;
-        if self.discrete { self.swap(&start, observer) } else { self.relax(&start, observer) }
+        let start = Stochastic { density: density.clone() }.sample(n, seed, observer)?.points;
+        if self.discrete {
+            swapping::swap(self, &start, observer)
+        } else {
+            self.relax(Relaxation::new(&start, density.as_deref()), observer)
+        }
     }
 }
 
 impl Cccvt {
     /// The continuous method.
-    fn relax(&self, start: &PointSet, observer: &dyn Observer) -> Result<Sample, SampleError> {
-        let mut relaxation = Relaxation::new(start);
+    fn relax(
+        &self,
+        mut relaxation: Relaxation,
+        observer: &dyn Observer,
+    ) -> Result<Sample, SampleError> {
         let mut done = 0;
         relaxation.balance(LOOSE);
         observer.iterated(0, &|| relaxation.points());
@@ -167,64 +158,4 @@ impl Cccvt {
             .with("converged", unrest <= self.tolerance && balance.converged);
         Ok(Sample::new(relaxation.points(), report))
     }
-    /// The discrete method: swaps alone first, of few samples and then of four times as many until
-    /// there are all, and then moves and swaps in turn.
-    fn swap(&self, start: &PointSet, observer: &dyn Observer) -> Result<Sample, SampleError> {
-        let capacity = self.samples_per_site as usize;
-        let count = start.len().saturating_mul(capacity);
-        if !(1..=MOST_SAMPLES).contains(&count) {
-            let reason = format!("{count} samples in all, but 1 to {MOST_SAMPLES} are possible");
-            return Err(SampleError::InvalidOption { option: "samples-per-site", reason });
-        }
-        let mut levels = 0;
-        while capacity >> (2 * levels) >= 4 * FEWEST && (capacity >> (2 * levels)).is_multiple_of(4)
-        {
-            levels += 1;
-        }
-        let mut assignment = Assignment::new(start, capacity >> (2 * levels))?;
-        observer.iterated(0, &|| assignment.sites().to_vec());
-        let mut sweeps = 0;
-        for level in 0..=levels {
-            sweeps += settle(&mut assignment, count >> (2 * (levels - level)), observer)?;
-            if level < levels {
-                assignment.refine()?;
-            }
-        }
-        let mut done = 0;
-        let tolerance = NormalizedDistance::new(self.tolerance.value() * FINER);
-        while done < self.iterations && assignment.unrest() > tolerance {
-            let figures =
-                [("energy", assignment.energy()), ("unrest", assignment.unrest().value())];
-            let progress = Progress::new("moving", done.into(), Some(self.iterations.into()));
-            observe(observer, &progress.with_figures(&figures))?;
-            assignment.centre();
-            assignment.sweep();
-            done += 1;
-            observer.iterated(done.into(), &|| assignment.sites().to_vec());
-        }
-        let unrest = assignment.unrest();
-        let report = Report::new()
-            .with("iterations", u64::from(done))
-            .with("sweeps", sweeps + u64::from(done))
-            .with("samples", count)
-            .with("energy", assignment.energy())
-            .with("unrest_d_hex", unrest.value())
-            .with("converged", unrest <= tolerance);
-        Ok(Sample::new(assignment.sites().to_vec(), report))
-    }
-}
-
-/// Sweeps until few of `count` samples change their site; returns the number of sweeps.
-fn settle(
-    assignment: &mut Assignment,
-    count: usize,
-    observer: &dyn Observer,
-) -> Result<u64, SampleError> {
-    for sweep in 0..MOST_SWEEPS {
-        observe(observer, &Progress::new("swapping", sweep, None))?;
-        if assignment.sweep() * SETTLED <= count as u64 {
-            return Ok(sweep + 1);
-        }
-    }
-    Ok(MOST_SWEEPS)
 }

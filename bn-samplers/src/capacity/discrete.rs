@@ -134,10 +134,11 @@ impl Assignment {
         Ok(())
     }
 
-    /// Moves each site to the mean of its samples.
-    pub(super) fn centre(&mut self) {
+    /// Moves each site to the mean of its samples, or `stretch` times as far: the energy of the samples as they
+    /// are falls up to twice as far.
+    pub(super) fn centre(&mut self, stretch: f64) {
         for site in 0..self.sites.len() {
-            let to_centroid = self.to_centroid(site);
+            let to_centroid = self.to_centroid(site) * stretch;
             if to_centroid != DVec2::ZERO {
                 self.sites[site] = torus::wrap_point(self.sites[site] + to_centroid);
                 self.restless[site] = true;
@@ -273,7 +274,7 @@ mod tests {
         let mut assignment = Assignment::new(&random(20), 256).expect("memory");
         while assignment.sweep() > 0 {}
         let before = assignment.energy();
-        assignment.centre();
+        assignment.centre(1.0);
         assert!(assignment.unrest().value() < 1e-6 && assignment.energy() < before);
         assert!(assignment.sites().iter().all(|p| torus::contains(*p)));
     }
@@ -313,7 +314,7 @@ mod tests {
         let mut assignment = Assignment::new(&set, 64).expect("memory");
         for _ in 0..100 {
             assignment.sweep();
-            assignment.centre();
+            assignment.centre(1.0);
         }
         let sites = PointSet::new(assignment.sites).expect("on the torus");
         assert!(bn_geometry::Spacing::new(&sites).min() > 0.2);

@@ -6,3 +6,4 @@ mod discrete;
 mod regularity;
 mod relaxation;
 mod samples;
+mod swapping;

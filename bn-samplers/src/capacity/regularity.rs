@@ -5,7 +5,7 @@ use bn_geometry::PowerDiagram;
 use rand::RngExt;
 
 /// n²·∫ |x − p|² over a regular hexagon of area 1/n: 5/(18√3).
-const HEXAGON: f64 = 0.160_375_074_774_896;
+pub(super) const HEXAGON: f64 = 0.160_375_074_774_896;
 
 /// The most points that are thrown anywhere at a time.
 const MOST_THROWN: usize = 100;

@@ -1,9 +1,14 @@
 //! Points on their way to the centroids of cells of equal area.
 
-use bn_core::{CellGrid, DVec2, Density, NormalizedDistance, PointSet, StreamRng, torus};
-use bn_geometry::{Balance, BalancedDiagram};
+use std::sync::Arc;
 
-use super::regularity;
+use bn_core::{
+    CellGrid, DVec2, Density, DensityFunction, DensityIntegrals, NormalizedDistance, PointSet,
+    StreamRng, torus,
+};
+use bn_geometry::{Balance, BalancedDiagram, VoronoiCell};
+
+use super::regularity::{self, HEXAGON};
 
 /// A line search gives up after so many halvings: the slope is rounding by then.
 const MOST_HALVINGS: u32 = 20;
@@ -15,7 +20,13 @@ pub(super) struct Relaxation {
     /// Which point of the caller's stands at each place of the list.
     order: Vec<u32>,
     balanced: BalancedDiagram,
+    /// Whether cells are measured by a density.
+    is_weighed: bool,
 }
+
+/// Densities are raised to this, relative to their mean: Newton's method needs some mass on the edges of
+/// every cell, and so little moves no centroid visibly.
+const FAINTEST: f64 = 1e-6;
 
 /// Areas need to be no better than this, relative to 1/n, for centroids to move towards.
 pub(super) const LOOSE: f64 = 1e-3;
@@ -24,12 +35,18 @@ pub(super) const LOOSE: f64 = 1e-3;
 const MOST_STEPS: u32 = 100;
 
 impl Relaxation {
-    pub(super) fn new(points: &PointSet) -> Self {
+    /// Points in cells of equal mass by this density, evenly if there is none.
+    pub(super) fn new(points: &PointSet, density: Option<&DensityFunction>) -> Self {
         let grid = CellGrid::new(points);
         let order = grid.all().indices.to_vec();
         let sorted = grid.all().points.to_vec();
         let points = PointSet::new(sorted).expect("points of a set");
-        Self { points, order, balanced: BalancedDiagram::default() }
+        let balanced = density.map_or_else(BalancedDiagram::default, |density| {
+            let raised = density.map(|value| value.max(FAINTEST));
+            let raised = raised.expect("densities of mean 1 have finite sums");
+            BalancedDiagram::of_density(Arc::new(DensityIntegrals::new(&raised)))
+        });
+        Self { points, order, balanced, is_weighed: density.is_some() }
     }
 
     /// Finds the weights that make no area wrong by more than `tolerance`, relative to 1/n.
@@ -38,15 +55,26 @@ impl Relaxation {
     }
 
     /// n·Σ ∫ |x − p|² over the cells, the cost of transport in units that do not depend on n: 5/(18√3) =
-    /// 0.1604 for the hexagonal lattice, the least possible.
+    /// 0.1604 for the hexagonal lattice, the least possible for an even density.
     pub(super) fn energy(&self) -> f64 {
         self.balanced.transport_cost() * self.points.len() as f64
     }
 
-    /// The root mean square of the points' distances to the centroids of their cells.
+    /// The root mean square of the points' distances to the centroids of their cells. With a density each
+    /// distance is taken relative to the size of its cell, and told as if cells were of the mean size.
     pub(super) fn unrest(&self) -> NormalizedDistance {
-        let cells = self.balanced.diagram().cells();
-        let squares: f64 = cells.iter().map(|cell| cell.to_centroid.length_squared()).sum();
+        let cells = self.balanced.diagram().cells().iter();
+        let squares: f64 = if self.is_weighed {
+            // A regular hexagon of the area 1/n has the mean square HEXAGON/n.
+            let unit = HEXAGON / self.points.len() as f64;
+            let size = |cell: &VoronoiCell| cell.second_moment / (cell.area * unit);
+            cells
+                .filter(|cell| cell.second_moment > 0.0)
+                .map(|cell| cell.to_centroid.length_squared() / size(cell))
+                .sum()
+        } else {
+            cells.map(|cell| cell.to_centroid.length_squared()).sum()
+        };
         let n = self.points.len();
         Density::new(n).normalize_distance((squares / n as f64).sqrt())
     }
@@ -85,8 +113,11 @@ impl Relaxation {
     }
 
     /// The places in the list of points whose cells have the shape of those around; see
-    /// [`regularity::regular_points`].
+    /// [`regularity::regular_points`]. None where a density makes cells differ.
     pub(super) fn regular_points(&self, threshold: f64) -> Vec<usize> {
+        if self.is_weighed {
+            return Vec::new();
+        }
         regularity::regular_points(self.balanced.diagram(), threshold)
     }
 

@@ -1,25 +1,31 @@
-//! Electrostatic halftoning of a constant grey.
+//! Electrostatic halftoning.
 
-use bn_core::{DVec2, Observer, PointSet, Progress, Seed, torus};
+use std::sync::Arc;
+
+use bn_core::{DVec2, DensityFunction, Observer, PointSet, Progress, Seed, torus};
 use rand::RngExt;
 
 use super::ewald::CoulombForces;
+use crate::common_options::{DENSITY_OPTION, check_range, uneven};
 use crate::error::{check_count, observe};
-use crate::stochastic::uniform_points;
 use crate::{
     CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
-    SampleError, Sampler,
+    SampleError, Sampler, Stochastic,
 };
 
-/// Random points that repel each other as equal charges do, on a background that attracts them
-/// evenly, disturbed by a force field that keeps them from settling into a lattice.
+/// Random points that repel each other as equal charges do, on a grey background that attracts
+/// them, evenly or by a density, disturbed by a force field that keeps them from settling into a lattice.
 ///
-/// Thesis p. 112; C. Schmaltz, P. Gwosdek, A. Bruhn and J. Weickert, "Electrostatic halftoning",
-/// Computer Graphics Forum 29(8), 2010, for constant grey and with periodic boundaries. Each
+/// Thesis p. 112 (for constant grey); C. Schmaltz, P. Gwosdek, A. Bruhn and J. Weickert, "Electrostatic
+/// halftoning", Computer Graphics Forum 29(8), 2010, with periodic boundaries. Each
 /// iteration moves all particles along the forces on them; in the first half of the iterations
 /// they are shaken, less and less. Forces take O(n log n): those of near particles pair by pair,
 /// those of far ones by Fourier transforms, together exact to 10⁻⁵ of the force of a neighbour.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// With a density, steps, shaking and field are in proportion to the spacing that it makes nearby, and
+/// details finer than about half a spacing are blurred. Where most points crowd in less than a
+/// sixteenth of the torus, pairs of near particles take longer than O(n).
+#[derive(Clone, Debug, PartialEq)]
 pub struct Electrostatic {
     /// Strength of the random force field, from 0 to 10: a typical force, in units of the force
     /// between two particles at the mean spacing 1/√n.
@@ -29,11 +35,13 @@ pub struct Electrostatic {
     pub shaking: f64,
     /// Iterations at most, up to 10,000: fewer if the particles come to rest.
     pub iterations: u32,
+    /// The density of the points, uniform if there is none.
+    pub density: Option<Arc<DensityFunction>>,
 }
 
 impl Default for Electrostatic {
     fn default() -> Self {
-        Self { field: 0.11, shaking: 0.1, iterations: 200 }
+        Self { field: 0.11, shaking: 0.1, iterations: 200, density: None }
     }
 }
 
@@ -70,13 +78,14 @@ pub(crate) const METHOD: Method = Method {
             help: "steps along the forces",
             unit: "",
         },
+        DENSITY_OPTION,
     ],
     build: |options| {
-        let defaults = Electrostatic::default();
         Ok(Box::new(Electrostatic {
-            field: options.real("field").unwrap_or(defaults.field),
-            shaking: options.real("shaking").unwrap_or(defaults.shaking),
-            iterations: options.integer("iterations").map_or(defaults.iterations, |i| i as u32),
+            field: options.number("field"),
+            shaking: options.number("shaking"),
+            iterations: options.count("iterations"),
+            density: options.density("density"),
         }))
     },
     version: 1,
@@ -101,22 +110,26 @@ impl Sampler for Electrostatic {
         self.check()?;
         let spacing = 1.0 / (n as f64).sqrt();
         let field = Field::new(n, self.field / spacing, seed);
-        let mut forces = CoulombForces::new(n)?;
-        let mut places = uniform_points(n, seed, 0)?;
+        let density = uneven(self.density.as_ref());
+        let mut coulomb = CoulombForces::new(n, density.as_deref())?;
+        let mut places = Stochastic { density }.sample(n, seed, observer)?.points.into_points();
         let (mut iterations, mut residual) = (0, f64::INFINITY);
+        observer.iterated(0, &|| places.clone());
         while iterations < self.iterations {
             let total = u64::from(self.iterations);
             observe(observer, &Progress::new("repelling", iterations.into(), Some(total)))?;
             let points = PointSet::new(places).expect("points of the unit torus");
-            let forces = forces.at(&points);
+            let forces = coulomb.at(&points);
             places = points.into_points();
-            residual = advance(&mut places, &forces, &field, spacing);
+            let crowding = |p| coulomb.crowding(p);
+            residual = advance(&mut places, &forces, &field, spacing, crowding);
             // Ever less, down to none half way.
             let rest = 1.0 - 2.0 * f64::from(iterations) / f64::from(self.iterations);
             if rest > 0.0 && iterations.is_multiple_of(SHAKE_EVERY) {
-                shake(&mut places, self.shaking * rest * spacing, seed, iterations);
+                shake(&mut places, self.shaking * rest * spacing, seed, iterations, crowding);
             }
             iterations += 1;
+            observer.iterated(iterations.into(), &|| places.clone());
             if rest <= 0.0 && residual < AT_REST {
                 break;
             }
@@ -136,41 +149,48 @@ const AT_REST: f64 = 1e-6;
 
 impl Electrostatic {
     fn check(&self) -> Result<(), SampleError> {
-        for (option, value) in [("field", self.field), ("shaking", self.shaking)] {
-            if !(0.0..=STRONGEST).contains(&value) {
-                let reason = format!("{value} is not a number from 0 to {STRONGEST}");
-                return Err(SampleError::InvalidOption { option, reason });
-            }
-        }
-        if u64::from(self.iterations) > MOST {
-            let reason = format!("{} is more than {MOST}", self.iterations);
-            return Err(SampleError::InvalidOption { option: "iterations", reason });
-        }
-        Ok(())
+        check_range("field", self.field, 0.0, STRONGEST)?;
+        check_range("shaking", self.shaking, 0.0, STRONGEST)?;
+        check_range("iterations", self.iterations.into(), 0.0, MOST as f64)
     }
 }
 
-/// Moves the particles along the forces; the root mean square of the steps, in spacings.
-fn advance(places: &mut [DVec2], forces: &[DVec2], field: &Field, spacing: f64) -> f64 {
-    // −ΔΦ = −2πn where no charge is, a particle's own share of the potential's curvature: no mode
-    // of motion has more, so steps up to 2/(2πn) of the force are stable.
+/// Moves the particles along the forces; the root mean square of the steps, in spacings. These are
+/// the smaller the more particles are crowded.
+fn advance(
+    places: &mut [DVec2],
+    forces: &[DVec2],
+    field: &Field,
+    spacing: f64,
+    crowding: impl Fn(DVec2) -> f64,
+) -> f64 {
+    // −ΔΦ = −2πnρ where no charge is, a particle's own share of the potential's curvature: no mode
+    // of motion has more, so steps up to 2/(2πnρ) of the force are stable.
     let step = STEP * spacing * spacing / std::f64::consts::PI;
     let mut sum = 0.0;
     for (p, &force) in places.iter_mut().zip(forces) {
-        let shift = step * (force + field.at(*p));
-        let shift = shift.clamp_length_max(LONGEST_STEP * spacing);
-        sum += shift.length_squared();
+        let crowding = crowding(*p);
+        let shrink = crowding.sqrt();
+        let shift = step / crowding * (force + shrink * field.at(*p));
+        let shift = shift.clamp_length_max(LONGEST_STEP * spacing / shrink);
+        sum += shift.length_squared() * crowding;
         *p = torus::wrap_point(*p + shift);
     }
     (sum / places.len() as f64).sqrt() / spacing
 }
 
-/// Moves each particle by up to `length` along each axis.
-fn shake(points: &mut [DVec2], length: f64, seed: Seed, iteration: u32) {
+/// Moves each particle by up to `length` along each axis, less where they are crowded.
+fn shake(
+    points: &mut [DVec2],
+    length: f64,
+    seed: Seed,
+    iteration: u32,
+    crowding: impl Fn(DVec2) -> f64,
+) {
     let mut rng = seed.stream(SHAKE_STREAM + iteration / SHAKE_EVERY);
     for p in points {
         let direction = DVec2::new(rng.random(), rng.random()) * 2.0 - 1.0;
-        *p = torus::wrap_point(*p + length * direction);
+        *p = torus::wrap_point(*p + length / crowding(*p).sqrt() * direction);
     }
 }
 
@@ -215,7 +235,8 @@ mod tests {
     /// Undisturbed charges end where their forces vanish: two of them half a period apart.
     #[test]
     fn two_charges_flee_to_the_far_corner() {
-        let method = Electrostatic { field: 0.0, shaking: 0.0, iterations: 2000 };
+        let method =
+            Electrostatic { field: 0.0, shaking: 0.0, iterations: 2000, ..Default::default() };
         for seed in 0..20 {
             let points = method.sample(2, Seed::new(seed), &Unobserved).expect("valid").points;
             let distance = torus::distance(points.points()[0], points.points()[1]);

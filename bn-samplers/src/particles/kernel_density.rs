@@ -6,6 +6,7 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
 use super::pair_forces::pair_forces;
+use crate::common_options::check_range;
 use crate::error::{check_count, observe};
 use crate::stochastic::uniform_points;
 use crate::{
@@ -73,11 +74,10 @@ pub(crate) const METHOD: Method = Method {
         },
     ],
     build: |options| {
-        let defaults = KernelDensity::default();
         Ok(Box::new(KernelDensity {
-            temperature: options.real("temperature").unwrap_or(defaults.temperature),
-            width: options.real("width").unwrap_or(defaults.width),
-            steps: options.integer("steps").map_or(defaults.steps, |steps| steps as u32),
+            temperature: options.number("temperature"),
+            width: options.number("width"),
+            steps: options.count("steps"),
         }))
     },
     version: 1,
@@ -130,19 +130,9 @@ impl Sampler for KernelDensity {
 
 impl KernelDensity {
     fn check(&self) -> Result<(), SampleError> {
-        let ranges =
-            [("temperature", self.temperature, 0.0, 1.0), ("width", self.width, NARROWEST, WIDEST)];
-        for (option, value, min, max) in ranges {
-            if !(min..=max).contains(&value) {
-                let reason = format!("{value} is not a number from {min} to {max}");
-                return Err(SampleError::InvalidOption { option, reason });
-            }
-        }
-        if u64::from(self.steps) > MOST {
-            let reason = format!("{} is more than {MOST}", self.steps);
-            return Err(SampleError::InvalidOption { option: "steps", reason });
-        }
-        Ok(())
+        check_range("temperature", self.temperature, 0.0, 1.0)?;
+        check_range("width", self.width, NARROWEST, WIDEST)?;
+        check_range("steps", self.steps.into(), 0.0, MOST as f64)
     }
 
     /// One Langevin step: x ← x − h·∇E + √(2hT)·ξ with standard normal ξ.

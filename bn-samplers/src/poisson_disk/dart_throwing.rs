@@ -1,10 +1,14 @@
 //! Dart throwing: random points, each at least a given distance from all earlier ones.
 
-use bn_core::{DVec2, Density, NormalizedDistance, Observer, Progress, Seed};
+use std::sync::Arc;
+
+use bn_core::{DVec2, Density, DensityFunction, NormalizedDistance, Observer, Progress, Seed};
 use rand::RngExt;
 
 use super::thrower::{Ending, Thrower};
+use super::uneven::UnevenThrower;
 use crate::bucket_grid::BucketGrid;
+use crate::common_options::{DENSITY_OPTION, check_range, uneven};
 use crate::error::{check_count, observe};
 use crate::{
     CountRule, DefaultValue, Method, OptionKind, OptionSpec, PointOrder, Report, Sample,
@@ -22,10 +26,18 @@ use crate::{
 /// 0.7766 `d_hex` just about n. [`DartThrowing::reliable_radius`] stays below it by six
 /// standard deviations of that number; beyond, the method may end with an error that tells the
 /// count reached.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+///
+/// With a density ρ, darts are thrown by it, and two points keep the distance r/√ρ with the larger of the
+/// densities at both. By default r shrinks by 1 % where fewer than one dart in 200 sticks, so that there
+/// will be n (`McCool` and Fiume, "Hierarchical Poisson disk sampling distributions", Graphics Interface
+/// 1992); a radius that is given stays. One thread does this, at some µs a dart.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct DartThrowing {
     /// The smallest distance, from 0 to 2 `d_hex`; by default [`DartThrowing::reliable_radius`].
+    /// Where there is a density, where it is the mean.
     pub radius: Option<NormalizedDistance>,
+    /// The density of the points, uniform if there is none.
+    pub density: Option<Arc<DensityFunction>>,
 }
 
 /// The registry's entry.
@@ -39,16 +51,21 @@ pub(crate) const METHOD: Method = Method {
     order: PointOrder::Arrival,
     counts: CountRule::Any,
     seeded: true,
-    options: &[OptionSpec {
-        name: "radius",
-        kind: OptionKind::Real { min: 0.0, max: LARGEST },
-        default: DefaultValue::Absent("the largest that is reliably reached, 0.768 at n = 4096"),
-        help: "smallest distance of two points; more than the default may fit fewer than n",
-        unit: "d_hex",
-    }],
+    options: &[
+        OptionSpec {
+            name: "radius",
+            kind: OptionKind::Real { min: 0.0, max: LARGEST },
+            default: DefaultValue::Absent(
+                "the largest that is reliably reached, 0.768 at n = 4096",
+            ),
+            help: "smallest distance of two points; more than the default may fit fewer than n",
+            unit: "d_hex",
+        },
+        DENSITY_OPTION,
+    ],
     build: |options| {
         let radius = options.real("radius").map(NormalizedDistance::new);
-        Ok(Box::new(DartThrowing { radius }))
+        Ok(Box::new(DartThrowing { radius, density: options.density("density") }))
     },
     version: 2,
 };
@@ -82,11 +99,12 @@ impl Sampler for DartThrowing {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
         check_count(METHOD.name, n)?;
         let normalized = self.radius.unwrap_or_else(|| Self::reliable_radius(n));
-        if !(0.0..=LARGEST).contains(&normalized.value()) {
-            let reason = format!("{normalized} is not a distance from 0 to {LARGEST} d_hex");
-            return Err(SampleError::InvalidOption { option: "radius", reason });
-        }
+        check_range("radius", normalized.value(), 0.0, LARGEST)?;
         let radius = normalized.to_unit_lengths(Density::new(n));
+        if let Some(density) = uneven(self.density.as_ref()) {
+            let thrower = UnevenThrower::new(&density, n, radius);
+            return self.throw_unevenly(thrower, n, seed, observer);
+        }
         let report = Report::new().with("radius_d_hex", normalized.value());
         if normalized.value() < SPARSE {
             let (points, darts) = throw_anywhere(n, radius, seed, observer)?;
@@ -98,6 +116,28 @@ impl Sampler for DartThrowing {
         }
         let report = report.with("darts", thrower.darts());
         Ok(Sample::new(thrower.into_points(), report))
+    }
+}
+
+impl DartThrowing {
+    fn throw_unevenly(
+        &self,
+        mut thrower: UnevenThrower<'_>,
+        n: usize,
+        seed: Seed,
+        observer: &dyn Observer,
+    ) -> Result<Sample, SampleError> {
+        thrower.throw(n, self.radius.is_none(), seed, observer)?;
+        let points = thrower.points();
+        if points.len() < n {
+            let advice = "hardly a dart keeps the distance; leave out --radius".to_owned();
+            let reached = points.len();
+            return Err(SampleError::NotReached { method: METHOD.name, n, reached, advice });
+        }
+        let radius = Density::new(n).normalize_distance(thrower.radius());
+        let report =
+            Report::new().with("radius_d_hex", radius.value()).with("darts", thrower.darts());
+        Ok(Sample::new(points, report))
     }
 }
 
@@ -140,6 +180,10 @@ mod tests {
     use super::*;
     use bn_core::{Unobserved, torus};
 
+    fn with_radius(radius: NormalizedDistance) -> DartThrowing {
+        DartThrowing { radius: Some(radius), density: None }
+    }
+
     fn smallest_distance(points: &[DVec2]) -> f64 {
         let pairs =
             points.iter().enumerate().flat_map(|(i, p)| points[..i].iter().map(move |q| (p, q)));
@@ -150,7 +194,7 @@ mod tests {
     fn keeps_the_distance_at_every_radius() {
         for n in [2, 3, 10, 300] {
             for radius in [0.0, 0.05, 0.29, 0.31, 0.5] {
-                let dart = DartThrowing { radius: Some(NormalizedDistance::new(radius)) };
+                let dart = with_radius(NormalizedDistance::new(radius));
                 let set = dart.sample(n, Seed::new(4), &Unobserved).expect("fits").points;
                 assert_eq!(set.len(), n);
                 let d_min = set.density().normalize_distance(smallest_distance(set.points()));
@@ -171,14 +215,14 @@ mod tests {
 
     #[test]
     fn tells_the_count_it_reached() {
-        let dart = DartThrowing { radius: Some(NormalizedDistance::new(0.85)) };
+        let dart = with_radius(NormalizedDistance::new(0.85));
         let error = dart.sample(1000, Seed::new(1), &Unobserved).expect_err("does not fit");
         assert!(!error.is_usage());
         let SampleError::NotReached { reached, .. } = error else { panic!("{error}") };
         // Jamming: 1000·(0.7766/0.85)² = 835 with a standard deviation of 7.
         assert!(reached.abs_diff(835) < 35, "{reached}");
         assert!(error.to_string().contains("--radius 0.758"), "{error}");
-        let whole = DartThrowing { radius: Some(NormalizedDistance::new(f64::NAN)) };
+        let whole = with_radius(NormalizedDistance::new(f64::NAN));
         assert!(whole.sample(9, Seed::new(1), &Unobserved).expect_err("NaN").is_usage());
     }
 
@@ -186,7 +230,7 @@ mod tests {
     #[test]
     fn accepted_darts_are_uniform_in_what_is_free() {
         for radius in [0.3, 0.28] {
-            let dart = DartThrowing { radius: Some(NormalizedDistance::new(radius)) };
+            let dart = with_radius(NormalizedDistance::new(radius));
             let length = radius * Density::new(2).hexagonal_spacing();
             let runs = 20_000;
             // Rings of equal area between the radius and 1/2, where a disk begins to wrap.

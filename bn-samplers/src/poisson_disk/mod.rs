@@ -6,3 +6,4 @@ mod disk_grid;
 pub(crate) mod maximal;
 mod thrower;
 mod tile;
+mod uneven;
