@@ -5,7 +5,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use bn_core::{Observer, PointSet, Progress, Seed, Unobserved, torus};
 use bn_samplers::{
-    CountRule, DefaultValue, METHODS, Method, OptionError, OptionKind, Sample, SampleError, find,
+    BestCandidate, Bnot, Cccvt, CountRule, DartThrowing, DefaultValue, Electrostatic,
+    FarthestPointOptimization, FarthestPointStrategy, Halton, Hexagonal, Jittered, KernelDensity,
+    Lloyd, METHODS, MaximalPoissonDisk, Method, Net, OptionError, OptionKind, R2, Regular, Sample,
+    SampleError, Sampler, SinglePeak, Sobol, Step, Stochastic, find,
 };
 
 const SMALL: [usize; 9] = [1, 2, 3, 4, 5, 7, 16, 64, 100];
@@ -153,6 +156,37 @@ fn default_values_change_nothing() {
         let given = method.with_options(defaults).expect("defaults are valid");
         let none = method.with_options([]).expect("valid");
         assert_eq!(format!("{given:?}"), format!("{none:?}"), "{}", method.name);
+    }
+}
+
+#[test]
+fn registered_defaults_are_those_of_the_structs() {
+    let structs: [(&str, Box<dyn Sampler>); 20] = [
+        ("stochastic", Box::new(Stochastic::default())),
+        ("jittered", Box::new(Jittered::default())),
+        ("dart-throwing", Box::new(DartThrowing::default())),
+        ("maximal-poisson-disk", Box::new(MaximalPoissonDisk::default())),
+        ("best-candidate", Box::new(BestCandidate::default())),
+        ("farthest-point-strategy", Box::new(FarthestPointStrategy::default())),
+        ("kernel-density", Box::new(KernelDensity::default())),
+        ("electrostatic", Box::new(Electrostatic::default())),
+        ("cccvt", Box::new(Cccvt::default())),
+        ("lloyd", Box::new(Lloyd::default())),
+        ("net", Box::new(Net::default())),
+        ("regular", Box::new(Regular::default())),
+        ("hexagonal", Box::new(Hexagonal::default())),
+        ("fpo", Box::new(FarthestPointOptimization::default())),
+        ("step", Box::new(Step::default())),
+        ("single-peak", Box::new(SinglePeak::default())),
+        ("halton", Box::new(Halton::default())),
+        ("sobol", Box::new(Sobol::default())),
+        ("r2", Box::new(R2::default())),
+        ("bnot", Box::new(Bnot::default())),
+    ];
+    assert_eq!(structs.len(), METHODS.len(), "list the new method as well");
+    for (name, default) in structs {
+        let registered = find(name).expect("known").with_options([]).expect("valid");
+        assert_eq!(format!("{default:?}"), format!("{registered:?}"));
     }
 }
 

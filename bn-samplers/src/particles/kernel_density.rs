@@ -112,14 +112,22 @@ impl Sampler for KernelDensity {
         let coarsest = counts.pop().unwrap_or(n);
         let mut points = uniform_points(coarsest, seed, 0)?;
         loop {
-            for _ in 0..self.steps {
+            // Observers follow all points, not those of coarser levels.
+            let is_finest = counts.is_empty();
+            for step in 0..self.steps {
+                if is_finest {
+                    observer.iterated(step.into(), &|| points.clone());
+                }
                 observe(observer, &Progress::new("settling", done, Some(total)))?;
                 done += 1;
                 points = self.step(points, seed, stream);
                 stream += points.len().div_ceil(BLOCK) as u32;
             }
             observe(observer, &Progress::new("settling", done, Some(total)))?;
-            let Some(count) = counts.pop() else { break };
+            let Some(count) = counts.pop() else {
+                observer.iterated(self.steps.into(), &|| points.clone());
+                break;
+            };
             points = split(&points, count, seed, stream);
             stream += 1;
         }
