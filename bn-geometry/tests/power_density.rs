@@ -24,7 +24,7 @@ fn cells_hold_the_mass_of_their_places() {
     let (points, weights) = (random_points(20, 3), weights(20));
     let mut diagram = PowerDiagram::of_density(Arc::new(DensityIntegrals::new(&density)));
     diagram.update(&set(&points), &weights);
-    let side = 24 * 25;
+    let side = 24_usize * 25;
     let mut sums = [(0.0, DVec2::ZERO, 0.0); 20];
     for i in 0..side * side {
         let x = at((i % side) as f64 + 0.5, (i / side) as f64 + 0.5) / side as f64;
