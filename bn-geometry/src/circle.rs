@@ -15,6 +15,15 @@ pub struct Circle {
 }
 
 impl Circle {
+    /// The circle through the corners of a triangle, given counter-clockwise: its area must be
+    /// positive and its corners or their differences those of a [`Triangulation`](crate::Triangulation)'s
+    /// points. The relative error of the squared radius is below 4e-13, however flat the triangle is,
+    /// and some 1e-15 unless it is.
+    #[inline]
+    pub fn through(corners: [DVec2; 3]) -> Self {
+        circumcircle(corners)
+    }
+
     /// Its radius.
     pub fn radius(&self) -> f64 {
         self.radius_squared.sqrt()
@@ -28,7 +37,8 @@ const FLAT: f64 = 1e-6;
 ///
 /// The relative error of the squared radius is below 4e-13, however flat the triangle is, and some
 /// 1e-15 unless it is: where the sine of the angle at the first corner is below a thousandth, the
-/// area is taken exactly and from the corner with the widest angle.
+/// area is taken exactly and from the corner with the widest angle. Inlined, so that who needs the
+/// radius alone does not pay for the centre.
 #[inline]
 pub fn circumcircle([a, b, c]: [DVec2; 3]) -> Circle {
     let (u, v) = (b - a, c - a);
@@ -38,19 +48,6 @@ pub fn circumcircle([a, b, c]: [DVec2; 3]) -> Circle {
         through_origin(a, u, v, area)
     } else {
         circumcircle_of_sliver([a, b, c])
-    }
-}
-
-/// The squared radius of [`circumcircle`], bit for bit.
-#[inline]
-pub fn circumradius_squared([a, b, c]: [DVec2; 3]) -> f64 {
-    let (u, v) = (b - a, c - a);
-    let (u2, v2) = (u.length_squared(), v.length_squared());
-    let area = u.x * v.y - u.y * v.x;
-    if area * area > FLAT * (u2 * v2) {
-        radius_squared(u, v, area)
-    } else {
-        circumcircle_of_sliver([a, b, c]).radius_squared
     }
 }
 

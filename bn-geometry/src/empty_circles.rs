@@ -1,7 +1,9 @@
 //! The faces of a triangulation in the order of their circles.
 
+use bn_core::DVec2;
+
 use crate::max_tree::MaxTree;
-use crate::{FaceId, Triangulation};
+use crate::{Circle, FaceId, Triangulation};
 
 /// Knows at any time which face of a changing triangulation has the largest circumcircle: the
 /// largest hole among the points.
@@ -27,29 +29,45 @@ use crate::{FaceId, Triangulation};
 /// ```
 #[derive(Clone, Debug)]
 pub struct EmptyCircles {
-    /// Squared radius by face; 0 where there is no face.
-    radius_squared: MaxTree,
+    /// Size by face; 0 where there is no face.
+    size: MaxTree,
 }
 
 impl EmptyCircles {
-    /// The circles of all faces of a triangulation. O(n).
+    /// The circles of all faces of a triangulation, by their squared radii. O(n).
     pub fn new(triangulation: &Triangulation) -> Self {
+        Self::sized(triangulation, by_radius)
+    }
+
+    /// As [`EmptyCircles::new`], but by any size ≥ 0 that is a function of the
+    /// face's corners, as [`Face::corners`](crate::Face::corners) has them.
+    pub fn sized(triangulation: &Triangulation, size: impl Fn([DVec2; 3]) -> f64) -> Self {
         let bound = triangulation.face_bound();
-        let mut circles = Self { radius_squared: MaxTree::zeros(bound) };
-        circles.renew(triangulation, (0..bound).map(FaceId::new));
+        let mut circles = Self { size: MaxTree::zeros(bound) };
+        circles.renew(triangulation, (0..bound).map(FaceId::new), size);
         circles
     }
 
     /// Takes over what the last insertion or removal changed.
     #[inline]
     pub fn update(&mut self, triangulation: &Triangulation) {
+        self.update_sized(triangulation, by_radius);
+    }
+
+    /// As [`EmptyCircles::update`], by the size given to [`EmptyCircles::sized`].
+    #[inline]
+    pub fn update_sized(
+        &mut self,
+        triangulation: &Triangulation,
+        size: impl Fn([DVec2; 3]) -> f64,
+    ) {
         let bound = triangulation.face_bound();
-        if bound <= self.radius_squared.len() {
-            self.renew(triangulation, triangulation.changed_faces().iter().copied());
+        if bound <= self.size.len() {
+            self.renew(triangulation, triangulation.changed_faces().iter().copied(), size);
         } else {
             // Room to grow, so that adding points one by one costs O(1) amortised.
-            self.radius_squared = MaxTree::zeros(2 * bound);
-            self.renew(triangulation, (0..bound).map(FaceId::new));
+            self.size = MaxTree::zeros(2 * bound);
+            self.renew(triangulation, (0..bound).map(FaceId::new), size);
         }
     }
 
@@ -58,23 +76,30 @@ impl EmptyCircles {
         &mut self,
         triangulation: &Triangulation,
         faces: impl Iterator<Item = FaceId> + Clone,
+        size: impl Fn([DVec2; 3]) -> f64,
     ) {
-        self.radius_squared.set(&faces.map(FaceId::index), |index| {
-            triangulation.circumradius_squared(FaceId::new(index)).unwrap_or(0.0)
+        self.size.set(&faces.map(FaceId::index), |index| {
+            triangulation.corners(FaceId::new(index)).map_or(0.0, &size)
         });
     }
 
-    /// The face with the largest circle, of several the one of lowest id; none if there is no face.
+    /// The face with the largest circle, of several the one of lowest id; none if there is no face
+    /// of a size above 0.
     #[inline]
     pub fn largest(&self) -> Option<FaceId> {
-        let index = self.radius_squared.argmax();
-        (self.radius_squared.get(index) > 0.0).then(|| FaceId::new(index))
+        let index = self.size.argmax();
+        (self.size.get(index) > 0.0).then(|| FaceId::new(index))
     }
 
-    /// The squared radius of a face's circle; 0 if there was no such face at the last update.
+    /// The size of a face's circle, by default its squared radius; 0 if there was no such face at
+    /// the last update.
     #[inline]
-    pub fn radius_squared(&self, face: FaceId) -> f64 {
+    pub fn size(&self, face: FaceId) -> f64 {
         let index = face.index();
-        if index < self.radius_squared.len() { self.radius_squared.get(index) } else { 0.0 }
+        if index < self.size.len() { self.size.get(index) } else { 0.0 }
     }
+}
+
+fn by_radius(corners: [DVec2; 3]) -> f64 {
+    Circle::through(corners).radius_squared
 }

@@ -132,7 +132,7 @@ proptest! {
                 }
             }
             let coverage = Coverage::of(&triangulation);
-            let largest = holes.largest().map(|face| holes.radius_squared(face).sqrt());
+            let largest = holes.largest().map(|face| holes.size(face).sqrt());
             prop_assert_eq!(largest, coverage.map(|coverage| coverage.radius));
             prop_assert!(holes.largest().is_none_or(|face| triangulation.has_face(face)));
         }

@@ -20,7 +20,7 @@ use self::coincident::{Coincidences, Departure};
 use self::face::{Face as FaceRecord, NONE};
 use self::locate::{Hints, Place};
 use self::mesh::{Mesh, Scratch};
-use crate::circle::{Circle, circumcircle, circumradius_squared};
+use crate::circle::{Circle, circumcircle};
 use crate::predicates::snap;
 
 pub use self::face::FaceId;
@@ -235,11 +235,11 @@ impl Triangulation {
         circumcircle(self.mesh.corners(record))
     }
 
-    /// The squared radius of a face's circle; none if there is no such face.
+    /// The places of a face's corners, as [`Face::corners`] has them; none if there is no such face.
     #[inline]
-    pub fn circumradius_squared(&self, face: FaceId) -> Option<f64> {
+    pub fn corners(&self, face: FaceId) -> Option<[DVec2; 3]> {
         let record = self.mesh.faces.get(face.index()).filter(|record| record.is_alive())?;
-        Some(circumradius_squared(self.mesh.corners(record)))
+        Some(self.mesh.corners(record))
     }
 
     #[inline]

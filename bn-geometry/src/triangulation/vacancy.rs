@@ -3,56 +3,69 @@
 use bn_core::DVec2;
 
 use super::Triangulation;
+use super::mesh::Scratch;
 use super::polygon::StarPolygon;
 use super::remove::delaunay_apex;
-use crate::circle::{circumcircle, circumradius_squared};
 
 /// The room that a point would leave behind if it were taken out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vacancy {
-    /// The squared distance from the point to its nearest neighbour.
-    pub clearance_squared: f64,
-    /// The squared radius of the largest circle among those of the faces that would fill the room.
-    pub radius_squared: f64,
-    /// The vector from the point to the centre of that circle.
-    pub to_center: DVec2,
+    /// How near the nearest neighbour is.
+    pub clearance: f64,
+    /// The size of the largest of the faces that would fill the room; 0 if all are of size 0.
+    pub size: f64,
+    /// The corners of that face, relative to the point; none if all are of size 0.
+    pub face: Option<[DVec2; 3]>,
 }
 
 impl Triangulation {
-    /// The room that point `index` would leave behind if it were taken out; none if the point
-    /// shares its place with others or is its own neighbour. Changes nothing that can be seen; a
-    /// [`Triangulation::relocate`] of the same point that follows at once takes less time.
+    /// The room that point `index` would leave behind if it were taken out, its faces measured by
+    /// `size`, a function ≥ 0 of their corners such as the radius of the circle through them, and
+    /// neighbours by `distance`, both of places relative to the point; none if the point shares its
+    /// place with others or is its own neighbour.
     ///
-    /// O(d²) for a point with d neighbours, with no allocation.
+    /// Changes nothing that can be seen; a [`Triangulation::relocate`] of the same point that
+    /// follows at once takes less time. O(d²) for a point with d neighbours, with no allocation.
     ///
     /// # Panics
     /// If there is no such point.
     #[inline]
-    pub fn vacancy(&mut self, index: usize) -> Option<Vacancy> {
+    pub fn vacancy(
+        &mut self,
+        index: usize,
+        size: impl Fn([DVec2; 3]) -> f64,
+        distance: impl Fn(DVec2) -> f64,
+    ) -> Option<Vacancy> {
         let vertex = self.vertex(index);
         if self.coincidences.is_shared(vertex) {
             return None;
         }
-        let star = &mut self.scratch.star;
-        self.mesh.gather_star(vertex, star).then(|| star.vacancy(&mut self.scratch.spans))
+        let Scratch { star, spans, .. } = &mut self.scratch;
+        self.mesh.gather_star(vertex, star).then(|| star.vacancy(spans, size, distance))
     }
 }
 
 impl StarPolygon {
     /// The vacancy of the centre.
     #[inline]
-    fn vacancy(&self, spans: &mut Vec<(usize, usize)>) -> Vacancy {
-        let lengths = self.corners.iter().map(|corner| corner.position.length_squared());
-        let clearance_squared = lengths.fold(f64::INFINITY, f64::min);
-        let (mut largest, mut radius_squared) = ([0; 3], 0.0);
+    fn vacancy(
+        &self,
+        spans: &mut Vec<(usize, usize)>,
+        size: impl Fn([DVec2; 3]) -> f64,
+        distance: impl Fn(DVec2) -> f64,
+    ) -> Vacancy {
+        let distances = self.corners.iter().map(|corner| distance(corner.position));
+        let clearance = distances.fold(f64::INFINITY, f64::min);
+        let places = |face: [usize; 3]| face.map(|i| self.corners[i].position);
+        let (mut largest, mut greatest) = (None, 0.0);
         spans.clear();
         let (mut first, mut last) = (0, self.corners.len() - 1);
         loop {
             let apex = delaunay_apex(&self.corners, first, last);
             let face = [first, apex, last];
-            let squared = circumradius_squared(face.map(|i| self.corners[i].position));
-            if squared > radius_squared {
-                (largest, radius_squared) = (face, squared);
+            let found = size(places(face));
+            if found > greatest {
+                (largest, greatest) = (Some(face), found);
             }
             if apex > first + 1 {
                 spans.push((first, apex));
@@ -65,7 +78,6 @@ impl StarPolygon {
                 break;
             }
         }
-        let circle = circumcircle(largest.map(|i| self.corners[i].position));
-        Vacancy { clearance_squared, radius_squared, to_center: circle.center }
+        Vacancy { clearance, size: greatest, face: largest.map(places) }
     }
 }

@@ -1,14 +1,24 @@
 //! Farthest-point optimisation: points move to the largest holes among the others.
 
+mod arrangement;
+mod blocks;
+mod field;
 mod options;
+mod plug;
 mod swarm;
 
 use std::sync::Arc;
 
-use bn_core::{Density, NormalizedDistance, Observer, PointSet, Progress, Seed};
-use bn_geometry::Spacing;
+use bn_core::{
+    DVec2, Density, DensityFunction, NormalizedDistance, Observer, PointSet, Progress, Seed,
+};
 
-use self::swarm::{Search, Swarm};
+use self::arrangement::{Arrangement, Moves, Search, Spread, Stages};
+use self::blocks::Blocks;
+use self::field::{Even, Field};
+use self::plug::{Plugged, plug};
+use self::swarm::{Order, Swarm};
+use crate::common_options::uneven;
 use crate::error::{check_count, observe};
 use crate::{Method, Report, Sample, SampleError, Sampler, Stochastic};
 
@@ -38,6 +48,13 @@ pub struct FarthestPointOptimization {
     pub iterations: u32,
     /// Where the points start.
     pub start: FpoStart,
+    /// Whether to close the holes that remain: `R_c` falls from 0.86 to 0.76 and `d_min` to 0.90, and
+    /// little else changes.
+    pub plug: bool,
+    /// The density ϱ of the points, uniform if there is none. Distances are measured as
+    /// |x − y|·(ϱ(x)·ϱ(y))^¼; with [`FpoUntil::Spacing`] the end comes when `d_avg` in this sense
+    /// grows by less than 2·10⁻⁵ in an iteration at the latest.
+    pub density: Option<Arc<DensityFunction>>,
 }
 
 /// Where the points of [`FarthestPointOptimization`] start.
@@ -64,14 +81,23 @@ pub enum FpoVariant {
     /// [`FpoVariant::Global`], and faster ones where points are many.
     #[default]
     Hybrid,
+    /// As [`FpoVariant::Hybrid`], but the largest hole of the block of the torus that the point is
+    /// in. Needs no triangulation of the whole: independent blocks are worked on by all threads. In
+    /// an iteration each block is triangulated once and its points are visited 16 times. Fewer than
+    /// 905 points make one block: the torus. R. Chen and C. Gotsman, "Parallel blue-noise sampling by constrained farthest point
+    /// optimization", Comput. Graph. Forum 31(5), 2012.
+    Constrained,
 }
 
-/// When [`FarthestPointOptimization`] is done; at the latest when no point moved.
+/// When [`FarthestPointOptimization`] is done; at the latest when no point moved at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FpoUntil {
     /// When no two points are nearer to each other than this.
     Spacing(NormalizedDistance),
-    /// When no point moved.
+    /// When no point moved by more than 10⁻⁶ `d_hex` in an iteration. From there on moves shrink
+    /// geometrically, and `d_min` grows by some 10⁻⁵ in all; n = 4096 random points end at 0.931 to
+    /// 0.933. For that [`FpoVariant::Hybrid`] goes through blocks as [`FpoVariant::Constrained`] does:
+    /// points that are spread over the whole torus at once jam earlier, at 0.929 to 0.931.
     Converged,
 }
 
@@ -79,9 +105,27 @@ impl Default for FarthestPointOptimization {
     fn default() -> Self {
         // Points written as f32 still have 0.925.
         let until = FpoUntil::Spacing(NormalizedDistance::new(0.9251));
-        Self { variant: FpoVariant::default(), until, iterations: 10_000, start: FpoStart::Random }
+        Self {
+            variant: FpoVariant::default(),
+            until,
+            iterations: 10_000,
+            start: FpoStart::Random,
+            plug: false,
+            density: None,
+        }
     }
 }
+
+/// Iterations that the hybrid variant spends on blocks on the way to convergence: after four of them,
+/// as after two or forty, all of ten sets of 4096 points end at a `d_min` of 0.9304 to 0.9328.
+const BLOCK_PASSES: u32 = 4;
+
+/// Ways in `d_hex` that count as none.
+const STILL: f64 = 1e-6;
+
+/// A gain of `d_avg` in an iteration that counts as none where the density is uneven: there `d_min`
+/// ends between 0.5 and 0.9, as the density's slopes and edges let it, and `d_avg` at 0.92 to 0.93.
+const SETTLED: f64 = 2e-5;
 
 /// Sweeps over all points that the hybrid variant makes with the global search. Measured at
 /// n = 4096, means of 6 seeds: 349, 99, 89, 95 and 91 sweeps in all after 0, 1, 2, 3 and 4 global
@@ -93,22 +137,10 @@ impl Sampler for FarthestPointOptimization {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
         check_count(METHOD.name, n)?;
         let start = self.start(n, seed, observer)?;
-        let mut swarm = Swarm::new(&start, seed);
-        let (mut done, mut moved) = (0, n);
-        loop {
-            let spacing = swarm.spacing();
-            let state = State::new(&spacing, done, moved);
-            state.tell(self.iterations, observer)?;
-            observer.iterated(done.into(), &|| swarm.points());
-            if self.is_done(&state) || done == self.iterations {
-                return Ok(Sample::new(swarm.points(), self.report(&state)));
-            }
-            if self.variant == FpoVariant::Hybrid && done == GLOBAL_SWEEPS {
-                swarm.stay_local();
-            }
-            swarm.settle(spacing.min());
-            moved = swarm.sweep(self.search(done));
-            done += 1;
+        let order = Order::new(seed);
+        match uneven(self.density.as_ref()) {
+            Some(density) => self.optimize(&start, density, order, observer),
+            None => self.optimize(&start, Even, order, observer),
         }
     }
 }
@@ -121,7 +153,9 @@ impl FarthestPointOptimization {
         observer: &dyn Observer,
     ) -> Result<PointSet, SampleError> {
         let start = match &self.start {
-            FpoStart::Random => Stochastic::default().sample(n, seed, observer)?.points,
+            FpoStart::Random => {
+                Stochastic { density: self.density.clone() }.sample(n, seed, observer)?.points
+            }
             FpoStart::Points(points) => PointSet::clone(points),
             FpoStart::Method(method) => sample_by(method, n, seed, observer)?,
         };
@@ -132,11 +166,60 @@ impl FarthestPointOptimization {
         Err(SampleError::InvalidOption { option: "initial", reason })
     }
 
+    fn optimize<F: Field + Clone + Sync>(
+        &self,
+        start: &PointSet,
+        field: F,
+        order: Order,
+        observer: &dyn Observer,
+    ) -> Result<Sample, SampleError> {
+        let (n, points) = (start.len(), start.points());
+        let passes = if Blocks::<F>::can_divide(n) { self.block_passes() } else { 0 };
+        let arrangement = match passes {
+            0 => Stages::Whole(Box::new(Swarm::new(points, field, order))),
+            passes => Stages::Blocks(Blocks::new(points, field, order), passes),
+        };
+        self.iterate(n, arrangement, observer)
+    }
+
+    fn iterate(
+        &self,
+        n: usize,
+        mut arrangement: impl Arrangement,
+        observer: &dyn Observer,
+    ) -> Result<Sample, SampleError> {
+        let (mut done, mut moves) = (0, Moves { count: n, longest: f64::INFINITY });
+        let mut d_avg_before = f64::NEG_INFINITY;
+        loop {
+            let points = || arrangement.points();
+            let spread = arrangement.spread();
+            let mut state = State::new(spread, n, done, moves);
+            state.gain = state.d_avg.value() - d_avg_before;
+            d_avg_before = state.d_avg.value();
+            state.tell(self.iterations, observer)?;
+            observer.iterated(done.into(), &points);
+            if self.is_done(&state) || done == self.iterations {
+                return Ok(self.finish(points(), &state));
+            }
+            moves = arrangement.sweep(self.search(done), spread.min);
+            done += 1;
+        }
+    }
+
+    /// Iterations to be spent on blocks.
+    fn block_passes(&self) -> u32 {
+        match (self.variant, self.until) {
+            (FpoVariant::Constrained, _) => u32::MAX,
+            (FpoVariant::Hybrid, FpoUntil::Converged) => BLOCK_PASSES,
+            _ => 0,
+        }
+    }
+
     fn search(&self, sweep: u32) -> Search {
         match self.variant {
             FpoVariant::Global => Search::Global,
-            FpoVariant::Hybrid if sweep < GLOBAL_SWEEPS => Search::Global,
-            FpoVariant::Hybrid | FpoVariant::Local => Search::Local,
+            FpoVariant::Hybrid | FpoVariant::Constrained if sweep < GLOBAL_SWEEPS => Search::Global,
+            FpoVariant::Local | FpoVariant::Hybrid | FpoVariant::Constrained => Search::Local,
         }
     }
 
@@ -147,17 +230,34 @@ impl FarthestPointOptimization {
 
     fn is_reached(&self, state: &State) -> bool {
         match self.until {
-            FpoUntil::Spacing(target) => state.d_min >= target,
-            FpoUntil::Converged => state.moved == 0,
+            FpoUntil::Spacing(target) => {
+                state.d_min >= target
+                    || (uneven(self.density.as_ref()).is_some() && state.gain < SETTLED)
+            }
+            FpoUntil::Converged => state.longest.value() <= STILL,
         }
     }
 
-    fn report(&self, state: &State) -> Report {
-        let report = Report::new()
-            .with("iterations", u64::from(state.done))
-            .with("d_min", state.d_min.value())
-            .with("d_avg", state.d_avg.value())
+    /// The sample of the points as they ended, perhaps without their holes.
+    fn finish(&self, points: Vec<DVec2>, state: &State) -> Sample {
+        let report = Report::new().with("iterations", u64::from(state.done));
+        let (points, [d_min, d_avg], report) = if self.plug {
+            let Plugged { points, steps, distances, hole, is_tight } = plug(points);
+            let report = report.with("plugging_steps", u64::from(steps)).with("largest_hole", hole);
+            let note = "holes remain: start from a pattern nearer to its end";
+            (points, distances, if is_tight { report } else { report.with_note(note) })
+        } else {
+            (points, [state.d_min.value(), state.d_avg.value()], report)
+        };
+        let report = report
+            .with("d_min", d_min)
+            .with("d_avg", d_avg)
             .with("converged", self.is_reached(state));
+        Sample::new(points, self.with_shortfall(report, state))
+    }
+
+    /// The report with a note if the goal was not reached.
+    fn with_shortfall(&self, report: Report, state: &State) -> Report {
         match self.until {
             FpoUntil::Spacing(target) if !self.is_reached(state) => report.with_note(format!(
                 "d_min is {:.4}, not {target}, after {} iterations",
@@ -185,18 +285,24 @@ struct State {
     done: u32,
     /// Points that moved in the last iteration; all before the first.
     moved: usize,
+    /// The longest way of a point in the last iteration.
+    longest: NormalizedDistance,
+    /// By how much `d_avg` grew in the last iteration.
+    gain: f64,
     d_min: NormalizedDistance,
     d_avg: NormalizedDistance,
 }
 
 impl State {
-    fn new(spacing: &Spacing, done: u32, moved: usize) -> Self {
-        let density = Density::new(spacing.nearest_distances().len());
+    fn new(spread: Spread, n: usize, done: u32, moves: Moves) -> Self {
+        let density = Density::new(n);
         Self {
             done,
-            moved,
-            d_min: density.normalize_distance(spacing.min()),
-            d_avg: density.normalize_distance(spacing.mean()),
+            moved: moves.count,
+            longest: density.normalize_distance(moves.longest),
+            gain: f64::INFINITY,
+            d_min: density.normalize_distance(spread.min),
+            d_avg: density.normalize_distance(spread.mean),
         }
     }
 

@@ -3,6 +3,7 @@
 use bn_core::NormalizedDistance;
 
 use super::{FarthestPointOptimization, FpoStart, FpoUntil, FpoVariant};
+use crate::common_options::DENSITY_OPTION;
 use crate::{
     CountRule, DefaultValue, Method, OptionError, OptionKind, OptionSpec, OptionValues, PointOrder,
 };
@@ -21,22 +22,22 @@ pub(crate) const METHOD: Method = Method {
     options: &[
         OptionSpec {
             name: "variant",
-            kind: OptionKind::Choice(&["global", "local", "hybrid"]),
+            kind: OptionKind::Choice(&["global", "local", "hybrid", "constrained"]),
             default: DefaultValue::Value("hybrid"),
-            help: "where points look for holes: everywhere, at their neighbours, or first this then that",
+            help: "where points look for holes: everywhere, at their neighbours, first this then that, or so in blocks",
             unit: "",
         },
         OptionSpec {
             name: "until",
             kind: OptionKind::Choice(&["spacing", "converged"]),
             default: DefaultValue::Value("spacing"),
-            help: "stop when --d-min is reached, or only when no point moves",
+            help: "stop when --d-min is reached, or only when no point moves by more than 1e-6 d_hex",
             unit: "",
         },
         OptionSpec {
             name: "d-min",
             kind: OptionKind::Real { min: 0.0, max: 1.0 },
-            default: DefaultValue::Value("0.9251"),
+            default: DefaultValue::Absent("0.9251 with --until spacing"),
             help: "the smallest distance of two points to reach",
             unit: "d_hex",
         },
@@ -61,27 +62,47 @@ pub(crate) const METHOD: Method = Method {
             help: "the method whose pattern to start from, by name",
             unit: "",
         },
+        OptionSpec {
+            name: "plug",
+            kind: OptionKind::Flag,
+            default: DefaultValue::Value("false"),
+            help: "close the holes that remain, at some cost of the smallest distance",
+            unit: "",
+        },
+        DENSITY_OPTION,
     ],
     build: |options| Ok(Box::new(build(options)?)),
-    version: 1,
+    version: 2,
 };
 
 fn build(options: &OptionValues) -> Result<FarthestPointOptimization, OptionError> {
     let defaults = FarthestPointOptimization::default();
+    let plug = options.flag("plug");
+    if plug && options.density(DENSITY_OPTION.name).is_some() {
+        let reason = "holes are as large as a density wants them; leave out --density";
+        return Err(OptionError::Conflict { option: "plug", reason: reason.into() });
+    }
     Ok(FarthestPointOptimization {
         variant: match options.choice("variant") {
             Some("global") => FpoVariant::Global,
             Some("local") => FpoVariant::Local,
+            Some("constrained") => FpoVariant::Constrained,
             _ => FpoVariant::Hybrid,
         },
         until: match (options.choice("until"), options.real("d-min")) {
-            (Some("converged"), _) => FpoUntil::Converged,
+            (Some("converged"), Some(_)) => {
+                let reason = "--until converged knows no distance; leave out one of the two";
+                return Err(OptionError::Conflict { option: "d-min", reason: reason.into() });
+            }
+            (Some("converged"), None) => FpoUntil::Converged,
             (_, Some(d_min)) => FpoUntil::Spacing(NormalizedDistance::new(d_min)),
             (_, None) => defaults.until,
         },
         // The option's range ends below 2³².
         iterations: options.integer("iterations").map_or(defaults.iterations, |i| i as u32),
         start: start(options)?,
+        plug,
+        density: options.density(DENSITY_OPTION.name),
     })
 }
 

@@ -34,7 +34,7 @@ pub(super) enum Value {
     Absent,
 }
 
-/// A diagram with logarithmic axes.
+/// A diagram over a logarithmic axis; upwards it is linear if all values lie within a decade.
 #[derive(Clone, Debug)]
 pub(super) struct Diagram {
     /// In the plot's markup, as all labels.
@@ -162,9 +162,16 @@ impl Chapter {
 }
 
 impl Diagram {
+    fn is_flat(&self) -> bool {
+        let values = || self.curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
+        let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
+        high < 10.0 * low
+    }
+
     fn panel(&self) -> Panel {
-        let axis = |label| Axis::log(Text::math(label));
-        let panel = Panel::new(axis(self.x), axis(self.y)).titled(Text::math(&self.title));
+        let label = Text::math(self.y);
+        let y = if self.is_flat() { Axis::linear(label) } else { Axis::log(label) };
+        let panel = Panel::new(Axis::log(Text::math(self.x)), y).titled(Text::math(&self.title));
         self.curves.iter().enumerate().fold(panel, |panel, (i, curve)| {
             let series = Series::new(curve.points.iter().copied());
             let style = Style::Cycle(i);

@@ -7,6 +7,7 @@ mod estimators;
 mod hankel;
 mod machine;
 mod nufft;
+mod optimizers;
 mod samplers;
 mod timing;
 
@@ -30,7 +31,8 @@ pub(crate) struct BenchArgs {
     /// Fewer sizes, fewer repetitions: whether it works, not how fast it is
     #[arg(long)]
     quick: bool,
-    /// Only this chapter: bessel, hankel, bessel-sums, nufft, estimators or samplers
+    /// Only this chapter: bessel, hankel, bessel-sums, nufft, estimators, samplers or
+    /// optimizers
     #[arg(long, value_name = "CHAPTER")]
     only: Option<String>,
 }
@@ -55,13 +57,14 @@ const SEED: u64 = 1;
 type Measure = fn(Effort) -> Outcome<Chapter>;
 
 /// The chapters, in the order in which data flow.
-const CHAPTERS: [(&str, Measure); 6] = [
+const CHAPTERS: [(&str, Measure); 7] = [
     ("bessel", bessel::measure),
     ("hankel", hankel::measure),
     ("bessel-sums", bessel_sums::measure),
     ("nufft", nufft::measure),
     ("estimators", estimators::measure),
     ("samplers", samplers::measure),
+    ("optimizers", optimizers::measure),
 ];
 
 pub(crate) fn run(args: &BenchArgs) -> Outcome {

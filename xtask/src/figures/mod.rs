@@ -1,5 +1,8 @@
 //! `cargo xtask figures`: the thesis's figures, drawn from our own points.
 
+mod drawing;
+mod moves;
+mod optimization;
 mod pages;
 mod studio;
 
@@ -20,7 +23,7 @@ pub(crate) struct FigureSpec {
 }
 
 /// All figures, in the thesis's order; one file a family.
-static FIGURES: [&[FigureSpec]; 1] = [pages::FIGURES];
+static FIGURES: [&[FigureSpec]; 3] = [moves::FIGURES, optimization::FIGURES, pages::FIGURES];
 
 /// The thesis's figures as SVG files (pictures as PNG) under target/thesis/figures/
 #[derive(Debug, Args)]

@@ -1,5 +1,6 @@
 //! Point sets and their statistics, each made and measured once a run whatever tables ask for it.
 
+pub(crate) mod course;
 mod curves;
 pub(crate) mod make;
 mod store;
