@@ -2,6 +2,7 @@
 
 pub(crate) mod course;
 mod curves;
+pub(crate) mod imitation;
 pub(crate) mod make;
 mod store;
 pub(crate) mod trace;

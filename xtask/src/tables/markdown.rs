@@ -47,6 +47,9 @@ fn heading(id: &str) -> String {
 }
 
 fn name(row: &Row) -> String {
+    if row.method.is_empty() {
+        return row.label.clone();
+    }
     format!("{} (`{}`)", row.label, row.method)
 }
 

@@ -1,4 +1,4 @@
-//! The tables that print statistics of point sets, method by method: 3.1, 4.2 and appendix B.
+//! The tables that print statistics of point sets, method by method: 3.1, 4.2, 5.2 and appendix B.
 
 use bn_cli::Outcome;
 
