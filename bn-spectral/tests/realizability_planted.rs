@@ -34,13 +34,20 @@ fn the_reference_peak_is_not_realizable() {
     assert!(verdict.realizable, "{verdict:?}");
 }
 
+/// The square lattice, and the nearly hexagonal one of 60 × 70 points in shifted rows.
 #[test]
 fn lattices_exist() {
-    let m = 32_u32;
-    let lattice = (0..m * m).map(|i| DVec2::new(f64::from(i % m), f64::from(i / m)) / f64::from(m));
-    let set = PointSet::new(lattice.collect()).expect("valid");
-    let verdict = Realizability::of(&Target::imitating(&[set], 1024).expect("measurable"));
-    assert!(verdict.realizable, "{verdict:?}");
+    for (across, down, shift) in [(32_u32, 32_u32, 0.0), (60, 70, 0.5)] {
+        let place = |i: u32| {
+            let (ix, iy) = (i % across, i / across);
+            let x = f64::from(ix) + shift * f64::from(iy % 2);
+            DVec2::new(x / f64::from(across), f64::from(iy) / f64::from(down))
+        };
+        let set = PointSet::new((0..across * down).map(place).collect()).expect("valid");
+        let n = set.len();
+        let verdict = Realizability::of(&Target::imitating(&[set], n).expect("measurable"));
+        assert!(verdict.realizable, "{verdict:?}");
+    }
 }
 
 #[test]
@@ -53,33 +60,85 @@ fn negative_power_is_found_where_it_is() {
     assert!((40.0..42.0).contains(&verdict.at_nu), "{verdict:?}");
 }
 
-/// P whose g is 1 but for a dip of half-width w around r₀, planted through its transform.
+/// P whose g is 1 but for a dip of half-width w around r₀, planted through its transform. The dip
+/// takes 2πn·r₀·w·√(2π) ≈ 0.32 of the power away at most: P ≥ 0 holds.
 #[test]
 fn a_negative_rdf_in_a_narrow_band_is_found() {
-    let (r0, w) = (0.03, 0.0015);
+    let (r0, w) = (0.01, 0.0005);
     for (depth, want) in [(0.9, true), (1.1, false)] {
         let g = |r: f64| 1.0 - depth * libm::exp(-0.5 * ((r - r0) / w).powi(2));
         let samples: Vec<_> =
-            (0..6000).map(|i| (f64::from(i) * 5e-5, g(f64::from(i) * 5e-5))).collect();
+            (0..6000).map(|i| (f64::from(i) * 5e-6, g(f64::from(i) * 5e-6))).collect();
         let from_g = Target::rdf_curve(density(), &samples).expect("valid");
-        // To a curve of P, and from there alone.
-        let spectrum: Vec<_> =
-            (0..4000).map(|i| (f64::from(i) * 0.2, from_g.power(f64::from(i) * 0.2))).collect();
-        let low = spectrum.iter().map(|(_, p)| *p).fold(1.0, f64::min);
-        // The dip also takes power away: P ≥ 0 must not be what decides.
-        let lifted: Vec<_> = if low < 0.0 {
-            spectrum.iter().map(|&(nu, p)| (nu, p.max(0.0))).collect()
-        } else {
-            spectrum
-        };
-        let verdict = Realizability::of(&Target::power_curve(density(), &lifted).expect("valid"));
-        if low >= 0.0 {
-            assert_eq!(verdict.realizable, want, "{verdict:?}");
-            assert!((verdict.at_r - r0).abs() < w, "{verdict:?}");
-        }
         let direct = Realizability::of(&from_g);
+        assert_eq!(direct.realizable, want, "{direct:?}");
+        assert!(direct.min_power > 0.5, "{direct:?}");
         assert!((direct.min_g - (1.0 - depth)).abs() < 2e-3 && (direct.at_r - r0).abs() < 0.2 * w);
+        // To a curve of P, and from there alone: what lies beyond 16√n takes 1 % off the dip.
+        let spectrum: Vec<_> =
+            (0..5100).map(|i| (f64::from(i) * 0.2, from_g.power(f64::from(i) * 0.2))).collect();
+        let verdict = Realizability::of(&Target::power_curve(density(), &spectrum).expect("valid"));
+        assert_eq!(verdict.realizable, want, "{verdict:?}");
+        assert!((verdict.min_g - (1.0 - depth)).abs() < 0.02, "{verdict:?}");
+        assert!((verdict.at_r - r0).abs() < 0.2 * w, "{verdict:?}");
     }
+}
+
+/// A thin ring of power p at ν₁ adds c·J₀(2πν₁r) to g, c = 2πν₁p/n, and J₀ is never below −0.402759
+/// (DLMF 10.21: where J₁ has its first zero, 3.831706): realizable up to c = 2.482871.
+#[test]
+fn a_ring_may_have_as_much_power_as_the_bessel_function_allows() {
+    let (nu, width) = (64.0, 0.02);
+    for (c, want) in [(2.47, true), (2.50, false)] {
+        let height = c * N as f64 / (std::f64::consts::TAU * nu) / width;
+        let edge = 0.5 * width;
+        let samples = [
+            (nu - 3.0 * edge, 1.0),
+            (nu - 2.0 * edge, 1.0),
+            (nu, 1.0 + height),
+            (nu + 2.0 * edge, 1.0),
+            (nu + 3.0 * edge, 1.0),
+        ];
+        let verdict = Realizability::of(&Target::power_curve(density(), &samples).expect("valid"));
+        assert_eq!(verdict.realizable, want, "{verdict:?}");
+        assert!((verdict.min_g - (1.0 - 0.402_759_4 * c)).abs() < 1e-4, "{verdict:?}");
+        let first = 3.831_706 / (std::f64::consts::TAU * nu);
+        assert!((verdict.at_r - first).abs() < 0.01 * first, "{verdict:?}");
+    }
+}
+
+/// Random spectra of a few annuli, whose g is a sum of jincs.
+#[test]
+fn random_annuli_agree_with_brute_force() {
+    let mut rng = Seed::new(12).stream(0);
+    let (mut yes, mut no) = (0, 0);
+    for _ in 0..60 {
+        let rings = 2 + (4.0 * rng.random::<f64>()) as usize;
+        let mut edges: Vec<f64> = (0..rings).map(|_| 30.0 + 90.0 * rng.random::<f64>()).collect();
+        edges.sort_by(f64::total_cmp);
+        edges.insert(0, 0.0);
+        let values: Vec<f64> = (0..rings).map(|_| 2.0 * rng.random::<f64>()).collect();
+        // Samples so close to the edges that P is constant between them.
+        let close = 1e-7;
+        let ends = |k: usize| [(edges[k] + close, values[k]), (edges[k + 1] - close, values[k])];
+        let mut samples: Vec<(f64, f64)> = (0..rings).flat_map(ends).collect();
+        // Settled at 1, or the end would be tapered.
+        samples.extend([(edges[rings] + close, 1.0), (edges[rings] + 1.0, 1.0)]);
+        let verdict = Realizability::of(&Target::power_curve(density(), &samples).expect("valid"));
+        let least = (1..20_000).map(|i| annuli_rdf(&edges, &values, f64::from(i) * 5e-6));
+        let least = least.fold(f64::INFINITY, f64::min);
+        assert!((verdict.min_g - least).abs() < 1e-4, "{edges:?} {values:?}: {verdict:?}, {least}");
+        assert_eq!(verdict.realizable, least > -1e-9, "{edges:?} {values:?}: {verdict:?}");
+        if verdict.realizable { yes += 1 } else { no += 1 }
+    }
+    assert!(yes > 5 && no > 5, "{yes} realizable, {no} not: nothing was tested");
+}
+
+/// g(r) of annuli between `edges`, P = 1 beyond the last.
+fn annuli_rdf(edges: &[f64], values: &[f64], r: f64) -> f64 {
+    let disk = |edge: f64| edge * bn_spectral::j1(std::f64::consts::TAU * edge * r) / r;
+    let rings = values.iter().zip(edges.windows(2));
+    1.0 + rings.map(|(p, e)| (p - 1.0) * (disk(e[1]) - disk(e[0]))).sum::<f64>() / N as f64
 }
 
 /// Random members of the peaks' family against g on a dense grid, summed from thin annuli.

@@ -5,4 +5,5 @@
 mod analyze;
 mod folder;
 mod generate;
+mod matching;
 mod report;

@@ -4,7 +4,7 @@ use bn_core::{Curve, DVec2, Observer, PointSet, Progress, torus};
 use bn_spectral::{PairHistogram, Target};
 
 use super::Outcome;
-use super::table_forces::table_forces;
+use super::table_forces::{MOST_STRENGTHS, table_forces};
 use crate::SampleError;
 use crate::error::observe;
 
@@ -12,7 +12,7 @@ use crate::error::observe;
 /// f(r) = ∫₀ʳ (g − gₜ) dx along their line of sight (eq. 5.6 to 5.8), so that pairs leave the
 /// distances of which there are too many.
 ///
-/// In every iteration g is counted anew, in n bins over [0, ½), smoothed by a Gaussian; the fastest
+/// In every iteration g is counted anew, in n bins over [0, ½) (65,535 at most), smoothed by a Gaussian; the fastest
 /// point moves T/√n (the printed step size has `F_max` in the wrong place). The temperature T falls
 /// by a factor from 1 on whenever the error E = ‖g − gₜ‖₂ hasn't been lowered for some iterations.
 /// The best set that was seen is the result. As a reference: it ends where E is the noise of the
@@ -46,7 +46,7 @@ impl Force {
         start: &PointSet,
         observer: &dyn Observer,
     ) -> Result<Outcome, SampleError> {
-        let bins = start.len().clamp(2, PairHistogram::MAX_BINS);
+        let bins = start.len().clamp(2, MOST_STRENGTHS - 1);
         let wanted = target.rdf_histogram(bins).smoothed(self.smoothing * 0.5 / bins as f64);
         let mut points = start.clone();
         let mut best = (f64::INFINITY, points.clone());

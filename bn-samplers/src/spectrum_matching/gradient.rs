@@ -5,7 +5,7 @@ use bn_spectral::{PairHistogram, Target};
 
 use super::Outcome;
 use super::force::moved;
-use super::table_forces::table_forces;
+use super::table_forces::{MOST_STRENGTHS, table_forces};
 use crate::SampleError;
 use crate::error::observe;
 
@@ -44,7 +44,7 @@ impl Gradient {
         observer: &dyn Observer,
     ) -> Result<Outcome, SampleError> {
         let root = (start.len() as f64).sqrt();
-        let bins = ((0.5 * self.resolution * root) as usize).clamp(2, PairHistogram::MAX_BINS);
+        let bins = ((0.5 * self.resolution * root) as usize).clamp(2, MOST_STRENGTHS - 1);
         let deviation = self.kernel / root;
         let wanted = target.rdf_histogram(bins).smoothed(deviation);
         let excess = |points: &PointSet| {

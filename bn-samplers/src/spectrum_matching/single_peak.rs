@@ -53,7 +53,7 @@ pub(crate) const METHOD: Method = Method {
             algorithm: chosen_algorithm(options),
         }))
     },
-    version: 1,
+    version: 2,
 };
 
 impl SinglePeak {

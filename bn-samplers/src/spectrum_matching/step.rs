@@ -42,7 +42,7 @@ pub(crate) const METHOD: Method = Method {
     build: |options| {
         Ok(Box::new(Step { nu0: options.real("nu0"), algorithm: chosen_algorithm(options) }))
     },
-    version: 1,
+    version: 2,
 };
 
 impl Sampler for Step {

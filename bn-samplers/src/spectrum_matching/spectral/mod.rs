@@ -26,6 +26,9 @@ const FINE_COST: f64 = 1e-9;
 const FIRST_MOVE: f64 = 0.1;
 /// Earlier stages may end at this many times the cost that the last one ends at.
 const COARSE: f64 = 1000.0;
+/// The most evaluations of earlier stages if no set can have the spectrum: more bring order into the
+/// points, but not their spectrum nearer.
+const UNATTAINABLE: u32 = 60;
 /// A stage has got stuck when this many line searches …
 const PATIENCE: usize = 10;
 /// … lower the cost by less than this part of it.
@@ -64,8 +67,8 @@ impl Default for Spectral {
     fn default() -> Self {
         Self {
             stages: vec![
-                Stage { range: 1.5, evaluations: 100 },
-                Stage { range: 6.0, evaluations: 100 },
+                Stage { range: 1.5, evaluations: 150 },
+                Stage { range: 6.0, evaluations: 150 },
             ],
             tolerance: 1e-6,
             weights: None,
@@ -94,7 +97,8 @@ impl Spectral {
         start: &PointSet,
         observer: &dyn Observer,
     ) -> Result<Outcome, SampleError> {
-        let weights = self.weights.unwrap_or_else(|| default_weights(target));
+        let verdict = Realizability::of(target);
+        let weights = self.weights.unwrap_or_else(|| default_weights(&verdict));
         let n = start.len();
         let root = (n as f64).sqrt();
         let mut x: Vec<DVec2> = start.points().iter().map(|p| *p * root).collect();
@@ -103,7 +107,8 @@ impl Spectral {
             let last = number + 1 == self.stages.len();
             let goal = if last { self.tolerance } else { COARSE * self.tolerance };
             let rings = Rings::new(target, max_frequency(stage.range, n), weights);
-            let budget = stage.evaluations;
+            let most = if last || verdict.realizable { u32::MAX } else { UNATTAINABLE };
+            let budget = stage.evaluations.min(most);
             let search = Search { budget, goal, observer, number, before };
             let found = if goal < FINE_COST {
                 search.run(&mut plan(Match::<f64>::new(rings, n, FINE_TOLERANCE))?, x)?
@@ -126,8 +131,7 @@ pub(super) fn plan<P>(made: Result<P, NufftError>) -> Result<P, SampleError> {
 }
 
 /// Spectra that leave less than 0.7 √n empty and are realizable as far as is known can be met.
-fn default_weights(target: &Target) -> Weights {
-    let verdict = Realizability::of(target);
+fn default_weights(verdict: &Realizability) -> Weights {
     if verdict.realizable && verdict.warnings.is_empty() {
         Weights::ATTAINABLE
     } else {
