@@ -5,7 +5,9 @@ mod bessel_sums;
 mod chapter;
 mod estimators;
 mod hankel;
+mod imitations;
 mod machine;
+mod matching;
 mod nufft;
 mod optimizers;
 mod samplers;
@@ -31,8 +33,8 @@ pub(crate) struct BenchArgs {
     /// Fewer sizes, fewer repetitions: whether it works, not how fast it is
     #[arg(long)]
     quick: bool,
-    /// Only this chapter: bessel, hankel, bessel-sums, nufft, estimators, samplers or
-    /// optimizers
+    /// Only this chapter: bessel, hankel, bessel-sums, nufft, estimators, samplers, optimizers,
+    /// matching or imitations
     #[arg(long, value_name = "CHAPTER")]
     only: Option<String>,
 }
@@ -57,7 +59,7 @@ const SEED: u64 = 1;
 type Measure = fn(Effort) -> Outcome<Chapter>;
 
 /// The chapters, in the order in which data flow.
-const CHAPTERS: [(&str, Measure); 7] = [
+const CHAPTERS: [(&str, Measure); 9] = [
     ("bessel", bessel::measure),
     ("hankel", hankel::measure),
     ("bessel-sums", bessel_sums::measure),
@@ -65,6 +67,8 @@ const CHAPTERS: [(&str, Measure); 7] = [
     ("estimators", estimators::measure),
     ("samplers", samplers::measure),
     ("optimizers", optimizers::measure),
+    ("matching", matching::measure),
+    ("imitations", imitations::measure),
 ];
 
 pub(crate) fn run(args: &BenchArgs) -> Outcome {
