@@ -1,9 +1,15 @@
 //! `cargo xtask figures`: the thesis's figures, drawn from our own points.
 
+mod algorithms;
+mod correlations;
+mod designs;
 mod drawing;
+mod feasible;
+mod imitations;
 mod moves;
 mod optimization;
 mod pages;
+mod panels;
 mod studio;
 
 use std::time::Instant;
@@ -23,7 +29,16 @@ pub(crate) struct FigureSpec {
 }
 
 /// All figures, in the thesis's order; one file a family.
-static FIGURES: [&[FigureSpec]; 3] = [moves::FIGURES, optimization::FIGURES, pages::FIGURES];
+static FIGURES: [&[FigureSpec]; 8] = [
+    moves::FIGURES,
+    optimization::FIGURES,
+    correlations::FIGURES,
+    imitations::FIGURES,
+    designs::FIGURES,
+    feasible::FIGURES,
+    algorithms::FIGURES,
+    pages::FIGURES,
+];
 
 /// The thesis's figures as SVG files (pictures as PNG) under target/thesis/figures/
 #[derive(Debug, Args)]
