@@ -19,9 +19,16 @@ pub(super) fn markers(points: impl IntoIterator<Item = DVec2>) -> Series {
     Series::new(points.into_iter().map(|p| [p.x, p.y])).without_line()
 }
 
-/// All sides of a triangulation's faces, and those of their copies around the square.
+/// All edges of a triangulation.
 pub(super) fn edges(triangulation: &Triangulation) -> Series {
-    Series::new(triangulation.faces().flat_map(|face| outline(face.corners)))
+    let sides = triangulation.faces().flat_map(|face| {
+        [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
+            // Of an edge's two sides one: dashes drawn twice would look broken.
+            let is_first = face.vertices[i] <= face.vertices[j];
+            is_first.then(|| copies(&[face.corners[i], face.corners[j]]))
+        })
+    });
+    Series::new(sides.flatten().flatten())
 }
 
 /// The sides of some faces.

@@ -74,9 +74,9 @@ fn convergence(studio: &Studio) -> Outcome {
             // No pattern has a spacing of 1: all runs are of one length.
             let options = [("variant", variant), ("iterations", ITERATIONS), ("d-min", "1")];
             let runs = (0..sets).map(|set| run(&options, n, set)).collect::<Outcome<Vec<_>>>()?;
-            let measures: [(&str, Measure); 2] = [("d_{min}", d_min), ("d_{avg}", d_avg)];
+            let measures: [(&str, Measure); 2] = [("*d*_{min}", d_min), ("*d*_{avg}", d_avg)];
             for (j, (name, measure)) in measures.into_iter().enumerate() {
-                let name = Text::math(&format!("*{name}*, {variant}"));
+                let name = Text::math(&format!("{name}, {variant}"));
                 let series = Series::new(mean_course(&runs, measure));
                 lines.push(series.named(name).styled(Style::Cycle(2 * i + j)));
             }
