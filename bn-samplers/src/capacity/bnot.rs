@@ -30,7 +30,7 @@ use crate::{
 ///
 /// F. de Goes, K. Breeden, V. Ostromoukhov and M. Desbrun, "Blue noise through optimal transport",
 /// ACM Trans. Graph. 31(6), 2012. Not in the thesis's tables (it is cited on p. 24). O(n^1.5) an
-/// iteration, for the linear systems; some 40 ms on one core at 4096 points.
+/// iteration, for the linear systems; some 25 ms on one core at 4096 points.
 ///
 /// With a density, cells have equal masses instead of equal areas, and carrying the density to the points
 /// costs the least; nothing is broken up. An iteration takes time for every pixel on a cell's boundary then.
