@@ -2,7 +2,7 @@
 
 use bn_cli::{Failure, Outcome};
 use bn_core::{PointSet, Seed};
-use bn_geometry::Spacing;
+use bn_geometry::{Spacing, Triangulation, voronoi_cells};
 
 use super::chapter::{Chapter, Curve, Diagram, Value};
 
@@ -30,17 +30,51 @@ struct Contender {
     options: &'static [(&'static str, &'static str)],
 }
 
-const CONTESTS: [Contest; 1] = [Contest {
-    quantities: &[Quantity { name: "d_{min}", of: d_min }, Quantity { name: "d_{avg}", of: d_avg }],
-    contenders: &[
-        Contender { label: "global", method: "fpo", options: &[("variant", "global")] },
-        Contender { label: "local", method: "fpo", options: &[("variant", "local")] },
-        Contender { label: "hybrid", method: "fpo", options: &[("variant", "hybrid")] },
-        Contender { label: "constrained", method: "fpo", options: &[("variant", "constrained")] },
-        Contender { label: "Lloyd", method: "lloyd", options: &[("iterations", "1000")] },
-    ],
-    n: 4096,
-}];
+const CONTESTS: [Contest; 2] = [
+    Contest {
+        quantities: &[
+            Quantity { name: "d_{min}", of: d_min },
+            Quantity { name: "d_{avg}", of: d_avg },
+        ],
+        contenders: &[
+            Contender { label: "global", method: "fpo", options: &[("variant", "global")] },
+            Contender { label: "local", method: "fpo", options: &[("variant", "local")] },
+            Contender { label: "hybrid", method: "fpo", options: &[("variant", "hybrid")] },
+            Contender {
+                label: "constrained",
+                method: "fpo",
+                options: &[("variant", "constrained")],
+            },
+            Contender { label: "Lloyd", method: "lloyd", options: &[("iterations", "1000")] },
+        ],
+        n: 4096,
+    },
+    Contest {
+        quantities: &[
+            Quantity { name: "energy excess", of: energy_excess },
+            Quantity { name: "d_{avg}", of: d_avg },
+        ],
+        contenders: &[
+            Contender { label: "Lloyd", method: "lloyd", options: &[("iterations", "1000")] },
+            Contender { label: "CCCVT", method: "cccvt", options: &[("tolerance", "0.004")] },
+            Contender { label: "by swaps", method: "cccvt", options: &[("discrete", "true")] },
+            Contender { label: "BNOT", method: "bnot", options: &[("tolerance", "0.003")] },
+            Contender { label: "kernel density", method: "kernel-density", options: &[] },
+            Contender { label: "electrostatic", method: "electrostatic", options: &[] },
+        ],
+        n: 4096,
+    },
+];
+
+/// n·∫ d² over the torus, with d the distance to the nearest point, for the hexagonal lattice: 5/(18√3).
+const LEAST_ENERGY: f64 = 0.160_375_074_774_896;
+
+/// By how much that energy exceeds the least possible, as a fraction of it.
+fn energy_excess(points: &PointSet) -> f64 {
+    let cells = voronoi_cells(&Triangulation::new(points));
+    let energy: f64 = cells.iter().map(|cell| cell.second_moment).sum();
+    energy * points.len() as f64 / LEAST_ENERGY - 1.0
+}
 
 fn d_min(points: &PointSet) -> f64 {
     points.density().normalize_distance(Spacing::new(points).min()).value()
@@ -80,7 +114,9 @@ pub(super) fn measure(effort: Effort) -> Outcome<Chapter> {
         id: "optimizers",
         title: "Methods that move points",
         method: "One run each from random points, all threads; the table shows every fourth \
-                 recorded moment of the curves, and the last."
+                 recorded moment of the curves, and the last. The energy is n times the mean \
+                 squared distance to the nearest point, its excess that over the hexagonal \
+                 lattice's."
             .to_owned(),
         columns: &["method", "options", "points", "quantity", "iterations", "time / s", "value"],
         rows,
