@@ -15,7 +15,7 @@ pub(super) const FIGURES: &[FigureSpec] =
 
 /// The thesis compares the first two.
 const ALGORITHMS: [(&str, &str); 3] = [
-    ("gradient", "gradient descent (Zhou et al. 2012)"),
+    ("gradient", "Zhou et al. 2012"),
     ("force", "forces (the thesis)"),
     ("spectral", "spectral"),
 ];
