@@ -14,11 +14,8 @@ pub(super) const FIGURES: &[FigureSpec] =
     &[FigureSpec { id: "5.13", title: "the algorithms on step and single peak", draw }];
 
 /// The thesis compares the first two.
-const ALGORITHMS: [(&str, &str); 3] = [
-    ("gradient", "Zhou et al. 2012"),
-    ("force", "forces (the thesis)"),
-    ("spectral", "spectral"),
-];
+const ALGORITHMS: [(&str, &str); 3] =
+    [("gradient", "Zhou et al. 2012"), ("force", "forces (the thesis)"), ("spectral", "spectral")];
 /// The highest frequency shown, in √n/2.
 const HIGHEST: f64 = 6.0;
 
