@@ -1,15 +1,13 @@
 //! Density functions from images and formulas.
 
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use bn_core::{DensityFunction, DensityFunctionError};
-use bn_render::{Channels, Image};
+use bn_render::Channels;
 use exmex::{BinOp, Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
 
-use crate::{Failure, Outcome};
+use crate::{Failure, Outcome, image_file};
 
 /// Pixels on a side of the raster that a formula is evaluated on.
 const FORMULA_SIDE: usize = 1024;
@@ -17,7 +15,7 @@ const FORMULA_SIDE: usize = 1024;
 /// The longest formula.
 const MAX_FORMULA: usize = 1000;
 
-/// The density that `text` says: the name of a `.png` or `.pfm` image, or a formula of x and y.
+/// The density that `text` says: the name of a `.png`, `.pfm` or `.exr` image, or a formula of x and y.
 ///
 /// An image lies on the unit square with its top row at y = 1; points are as dense as it is dark,
 /// in proportion to 1 minus its linear luminance. A formula such as `0.1 + x^2` is evaluated at the
@@ -29,19 +27,14 @@ pub fn density(text: &str) -> Outcome<DensityFunction> {
     let path = Path::new(text);
     let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     match extension.as_deref() {
-        Some("png") => from_image(path, |file| bn_render::read_png(file, None)),
-        Some("pfm") => from_image(path, bn_render::read_pfm),
-        _ => from_formula(text),
+        Some("png" | "pfm" | "exr") => from_image(path),
+        _ => from_formula(text).map_err(Failure::usage),
     }
-    .with_context(|| format!("--density {text}"))
-    .map_err(Failure::usage)
+    .map_err(|failure| failure.context(format!("--density {text}")))
 }
 
-fn from_image(
-    path: &Path,
-    read: impl Fn(BufReader<File>) -> Result<Image, bn_render::ImageError>,
-) -> anyhow::Result<DensityFunction> {
-    let image = read(BufReader::new(File::open(path)?))?;
+fn from_image(path: &Path) -> Outcome<DensityFunction> {
+    let image = image_file::read(path, None)?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let mut values = Vec::with_capacity(width * height);
     for row in (0..image.height()).rev() {
@@ -61,9 +54,9 @@ fn from_image(
     }
     DensityFunction::from_raster(width, height, values).map_err(|error| match error {
         DensityFunctionError::Sum { .. } => {
-            anyhow!("the image is white all over: points go where it is dark")
+            Failure::misuse("the image is white all over: points go where it is dark")
         }
-        other => anyhow!(other),
+        other => Failure::usage(other),
     })
 }
 
@@ -133,8 +126,11 @@ fn from_formula(text: &str) -> anyhow::Result<DensityFunction> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
+
     use super::*;
     use bn_core::DVec2;
+    use bn_render::Image;
 
     #[test]
     fn formulas_know_x_and_y() {

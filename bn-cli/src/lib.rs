@@ -4,7 +4,8 @@
 //! - [`analysis`]: every statistic of a point set or an ensemble, each computed at most once and
 //!   only if asked for;
 //! - [`plot`] and [`report`]: figures as SVG (and PNG, with the feature `report`);
-//! - [`input`], [`density`]: point files, and density functions from images and formulas;
+//! - [`input`], [`image_file`], [`density`]: point and image files, and density functions from
+//!   images and formulas;
 //! - [`output`]: files that appear whole or not at all;
 //! - [`commands`]: the subcommands of `bn`.
 //!
@@ -15,6 +16,7 @@ pub mod commands;
 mod curve_file;
 pub mod density;
 mod failure;
+pub mod image_file;
 pub mod input;
 pub mod output;
 pub mod output_points;

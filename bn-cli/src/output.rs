@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all, and standard output that may close early.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -21,18 +21,54 @@ static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 /// # Errors
 /// What `write` returns, or that the file cannot be written.
 pub fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> Outcome) -> Outcome {
-    write_renamed(path, write).map_err(|failure| {
-        if failure.code() == Failure::FAILED {
-            failure.context(format!("cannot write {}", path.display()))
-        } else {
-            failure
-        }
-    })
+    renamed(path, |file| fill(file, write)).map_err(|failure| while_writing(path, failure))
 }
 
-fn write_renamed(path: &Path, write: impl FnOnce(&mut dyn Write) -> Outcome) -> Outcome {
+/// A disk that failed, with the name of the file that it failed for.
+fn while_writing(path: &Path, failure: Failure) -> Failure {
+    if failure.code() == Failure::FAILED {
+        failure.context(format!("cannot write {}", path.display()))
+    } else {
+        failure
+    }
+}
+
+/// [`write_to`] for formats whose parts are not written in order: `write` gets the file itself,
+/// unbuffered. For `-` that is a temporary file which is copied to standard output in the end.
+///
+/// # Errors
+/// As [`write_to`].
+pub fn write_seekable<T>(path: &Path, write: impl FnOnce(File) -> Outcome<T>) -> Outcome<T> {
+    if path.as_os_str() == "-" {
+        let mut file = tempfile::tempfile()?;
+        let made = write(file.try_clone()?)?;
+        file.rewind()?;
+        write_stdout(|w| Ok(io::copy(&mut file, w).map(drop)?))?;
+        return Ok(made);
+    }
+    renamed(path, |file| write(file.try_clone()?)).map_err(|failure| while_writing(path, failure))
+}
+
+/// Whether a file of this name could be made, as far as that can be told beforehand.
+///
+/// # Errors
+/// If there is no such folder.
+pub fn check_folder(path: &Path) -> Outcome {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder {
+        Some(folder) if !folder.is_dir() => Err(Failure::failed(anyhow::anyhow!(
+            "cannot write {}: there is no folder {}",
+            path.display(),
+            folder.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Lets `write` fill the file that is to be `path` and gives it that name, if all went well.
+fn renamed<T>(path: &Path, write: impl FnOnce(&File) -> Outcome<T>) -> Outcome<T> {
     if fs::metadata(path).is_ok_and(|file| !file.is_file() && !file.is_dir()) {
-        return fill(File::options().write(true).open(path)?, write);
+        return write(&File::options().write(true).open(path)?);
     }
     let target = behind_links(path);
     if fs::metadata(&target).is_ok_and(|file| file.permissions().readonly()) {
@@ -43,8 +79,9 @@ fn write_renamed(path: &Path, write: impl FnOnce(&mut dyn Write) -> Outcome) -> 
         _ => Path::new("."),
     };
     let temporary = Unfinished::within(directory)?;
-    fill(temporary.file.as_file(), write)?;
-    Ok(temporary.finish(&target)?)
+    let made = write(temporary.file.as_file())?;
+    temporary.finish(&target)?;
+    Ok(made)
 }
 
 /// What a name stands for: a link stays a link, and the file that it leads to, there or not yet, is

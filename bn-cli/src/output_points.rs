@@ -45,15 +45,7 @@ pub fn check(path: &Path, format: Option<Format>, sets: usize) -> Outcome {
             Ok(())
         };
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    match folder {
-        Some(folder) if !folder.is_dir() => Err(Failure::failed(anyhow!(
-            "cannot write {}: there is no folder {}",
-            path.display(),
-            folder.display()
-        ))),
-        _ => Ok(()),
-    }
+    output::check_folder(path)
 }
 
 fn holds_one(format: Format, sets: usize) -> Failure {

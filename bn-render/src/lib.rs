@@ -6,7 +6,8 @@
 //! ([`scene`], [`SCENES`]) or from an image ([`Picture`]), kernels by name ([`kernel`],
 //! [`KERNELS`]). [`Image`] holds linear light, reads and writes PNG, PFM and (feature `exr`)
 //! `OpenEXR`; [`mean_square_error`] and [`peak_signal_to_noise`] compare. [`Supersampling`] holds the
-//! fixed patterns of real-time graphics and their transfer functions.
+//! fixed patterns of real-time graphics and their transfer functions; [`exact_convolution`] is what
+//! samples without end would give.
 //!
 //! The image plane: u to the right and v down in pixels, pixel (i, j) has its centre at
 //! (i + ½, j + ½). Frequencies are in cycles per pixel.
@@ -35,6 +36,7 @@ mod kernel;
 mod metrics;
 mod pattern;
 mod plane;
+mod quadrature;
 mod resample;
 mod scene;
 mod simd;
@@ -45,11 +47,12 @@ pub use image::{
     linear_from_srgb, read_pfm, read_png, srgb_from_linear, write_pfm, write_png,
 };
 #[cfg(feature = "exr")]
-pub use image::{read_exr, write_exr};
+pub use image::{ExrRows, read_exr, stream_exr, write_exr};
 pub use kernel::{KERNELS, Kernel, KernelTable, MAX_RADIUS, kernel};
 pub use metrics::{difference, error_picture, mean_square_error, peak_signal_to_noise};
 pub use pattern::{Pattern, PatternError, SampleList, TileVariation};
 pub use plane::{Frame, FrameError, Rect, Window};
+pub use quadrature::{Convolution, exact_convolution};
 pub use resample::{Band, Normalization, RenderError, RenderStats, Renderer};
 pub use scene::{
     Checkerboard, Color, Constant, Interpolation, LimitedZonePlate, Picture, PlaneWave, PlaneWaves,

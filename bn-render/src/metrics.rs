@@ -1,6 +1,6 @@
 //! How far an image is from another.
 
-use crate::{Image, ImageError};
+use crate::{Image, ImageError, linear_from_srgb};
 
 /// Mean square error: the mean of (a − b)² over all pixels and channels, of the unquantised values.
 ///
@@ -40,14 +40,15 @@ pub fn difference(a: &Image, b: &Image) -> Result<Image, ImageError> {
     Image::new(a.width(), a.height(), a.channels(), values)
 }
 
-/// The error image as a picture: grey ½ where a = b, lighter where a is lighter, `gain` times
-/// enlarged: ½ + gain·(a − b), *encoded* values, so write them without a further curve.
+/// The error image as a picture: middle grey where a = b, lighter where a is lighter, `gain` times
+/// enlarged. Written with the sRGB curve, the values in the file are ½ + gain·(a − b).
 ///
 /// # Errors
 /// If the images differ in size or channels.
 pub fn error_picture(a: &Image, b: &Image, gain: f32) -> Result<Image, ImageError> {
     let error = difference(a, b)?;
-    let values = error.values().iter().map(|d| (0.5 + gain * d).clamp(0.0, 1.0)).collect();
+    let light = |d: f32| linear_from_srgb(f64::from((0.5 + gain * d).clamp(0.0, 1.0))) as f32;
+    let values = error.values().iter().map(|&d| light(d)).collect();
     Image::new(a.width(), a.height(), a.channels(), values)
 }
 
@@ -77,7 +78,8 @@ mod tests {
         assert_eq!(peak_signal_to_noise(0.0), f64::INFINITY);
         assert_eq!(difference(&a, &b).expect("same shape").values(), [0.0, -0.25, 0.5, 0.0]);
         let picture = error_picture(&a, &b, 4.0).expect("same shape");
-        assert_eq!(picture.values(), [0.5, 0.0, 1.0, 0.5]);
+        let grey = linear_from_srgb(0.5) as f32;
+        assert_eq!(picture.values(), [grey, 0.0, 1.0, grey]);
     }
 
     #[test]

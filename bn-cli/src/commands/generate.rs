@@ -1,15 +1,13 @@
 //! `bn generate`: patterns from the registry of methods.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use bn_core::io::Format;
 use bn_core::{Observer, PointSet, Seed, Unobserved};
 use bn_samplers::{
-    CountRule, DefaultValue, Given, METHODS, Method, OptionKind, OptionSpec, Report, Sample,
-    Sampler,
+    CountRule, DefaultValue, METHODS, Method, OptionKind, OptionSpec, Report, Sample, Sampler,
 };
 use clap::builder::ValueRange;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command};
@@ -17,8 +15,9 @@ use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
 use super::Global;
+use super::method_values::given_values;
 use crate::progress_bar::Bar;
-use crate::{Failure, Outcome, density, input, output, output_points};
+use crate::{Failure, Outcome, output, output_points};
 
 /// What every method takes.
 #[derive(Debug, Args)]
@@ -174,34 +173,6 @@ fn check_equal_sizes(method: &Method, args: &Generate, options: &[(&str, &str)])
         )));
     }
     Ok(())
-}
-
-/// The options as the method takes them: files of points and densities are read here.
-fn given_values<'a>(
-    method: &Method,
-    options: &[(&'static str, &'a str)],
-) -> Outcome<Vec<(&'static str, Given<'a>)>> {
-    let kind = |name| method.options.iter().find(|spec| spec.name == name).map(|spec| spec.kind);
-    let value = |name, text| -> Outcome<Given<'a>> {
-        Ok(match kind(name) {
-            Some(OptionKind::Points) => Given::Points(Arc::new(only_set(text)?)),
-            Some(OptionKind::Density) => Given::Density(Arc::new(density::density(text)?)),
-            _ => Given::Text(text),
-        })
-    };
-    options.iter().map(|&(name, text)| Ok((name, value(name, text)?))).collect()
-}
-
-/// The one set of a file.
-fn only_set(file: &str) -> Outcome<PointSet> {
-    let mut sets = input::read(Path::new(file), None, false)?.into_sets();
-    match (sets.pop(), sets.len()) {
-        (Some(set), 0) => Ok(set),
-        (_, others) => Err(Failure::misuse(format!(
-            "{file} holds {} sets where one is wanted; `bn convert` it to one file a set",
-            others + 1
-        ))),
-    }
 }
 
 /// The sets, made in parallel; one alone shows how it proceeds, several show how many are done.

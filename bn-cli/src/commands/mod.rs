@@ -6,7 +6,9 @@ mod convert;
 mod generate;
 mod list;
 mod match_;
+mod method_values;
 mod realize;
+mod render;
 #[cfg(feature = "report")]
 mod report;
 mod target;
@@ -61,6 +63,7 @@ pub fn command() -> Command {
             analyze::command(),
             match_::command(),
             realize::command(),
+            render::command(),
             convert::command(),
             completions::command(),
         ]);
@@ -90,6 +93,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Outcome {
         Some(("analyze", matches)) => analyze::run(&parsed(matches)?, &global),
         Some(("match", matches)) => match_::run(&parsed(matches)?, &global),
         Some(("realize", matches)) => realize::run(&parsed(matches)?, &global),
+        Some(("render", matches)) => render::run(&parsed(matches)?, &global),
         Some(("convert", matches)) => convert::run(&parsed(matches)?),
         Some(("completions", matches)) => completions::run(&parsed(matches)?),
         #[cfg(feature = "report")]

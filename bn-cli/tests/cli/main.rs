@@ -6,4 +6,5 @@ mod analyze;
 mod folder;
 mod generate;
 mod matching;
+mod render;
 mod report;

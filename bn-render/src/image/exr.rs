@@ -2,11 +2,15 @@
 
 use std::io::{BufRead, Seek, Write};
 
-use ::exr::meta::MetaData;
-use ::exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, ReadChannels,
-    ReadLayers, SmallVec, WritableImage, read,
-};
+use ::exr::block::writer::{ChunkWriter, ChunksWriter};
+use ::exr::block::{BlockIndex, UncompressedBlock};
+use ::exr::compression::Compression;
+use ::exr::math::Vec2;
+use ::exr::meta::attribute::{ChannelDescription, LineOrder, SampleType, Text};
+use ::exr::meta::header::Header;
+use ::exr::meta::{BlockDescription, MetaData};
+use ::exr::prelude::{ReadChannels, ReadLayers, SmallVec, read};
+use rayon::prelude::*;
 
 use super::{Channels, Image, ImageError, checked_len, malformed};
 
@@ -59,24 +63,158 @@ pub fn read_exr(mut input: impl BufRead + Seek) -> Result<Image, ImageError> {
 /// # Errors
 /// If the output fails.
 pub fn write_exr(image: &Image, output: impl Write + Seek) -> Result<(), ImageError> {
-    let names: &[&str] = match image.channels() {
+    stream_exr(output, image.width(), image.height(), image.channels(), |rows| {
+        rows.write_rows(image.values())
+    })
+}
+
+/// Writes an EXR file from rows that come from the top: `make` is called once and hands them to the
+/// [`ExrRows`] it is given. Memory holds 64 rows and what compression takes.
+///
+/// # Errors
+/// What `make` returns, or that rows are missing or the output fails.
+pub fn stream_exr<W: Write + Seek, E: From<ImageError>>(
+    output: W,
+    width: u32,
+    height: u32,
+    channels: Channels,
+    make: impl FnOnce(&mut ExrRows<'_, W>) -> Result<(), E>,
+) -> Result<(), E> {
+    let names: &[&str] = match channels {
         Channels::Grey => &["Y"],
-        Channels::Rgb => &["R", "G", "B"],
+        Channels::Rgb => &["B", "G", "R"],
     };
-    let plane = |offset: usize| {
-        let values = image.values().iter().copied().skip(offset).step_by(names.len());
-        FlatSamples::F32(values.collect())
-    };
-    let channels: SmallVec<[_; 4]> =
-        names.iter().enumerate().map(|(i, &name)| AnyChannel::new(name, plane(i))).collect();
-    let size = (image.width() as usize, image.height() as usize);
-    let layer = Layer::new(
-        size,
-        LayerAttributes::named("image"),
-        Encoding::SMALL_LOSSLESS,
-        AnyChannels::sort(channels),
+    let described =
+        names.iter().map(|&name| ChannelDescription::named(name, SampleType::F32)).collect();
+    let size = Vec2(width as usize, height as usize);
+    let header = Header::new(Text::from("image"), size, described).with_encoding(
+        Compression::ZIP16,
+        BlockDescription::ScanLines,
+        LineOrder::Increasing,
     );
-    ::exr::prelude::Image::from_layer(layer).write().to_buffered(output).map_err(from_exr)
+    let mut headers = SmallVec::new();
+    headers.push(header);
+    // What `make` fails with passes by the writer, which knows its own errors only.
+    let mut failure = None;
+    let written = ::exr::block::write(output, headers, false, |meta, writer| {
+        let mut rows = ExrRows {
+            meta: &meta,
+            writer,
+            width: size.0,
+            height: size.1,
+            channels,
+            row: 0,
+            pending: Vec::new(),
+        };
+        let made = make(&mut rows).and_then(|()| rows.finish().map_err(E::from));
+        made.map_err(|error| {
+            failure = Some(error);
+            ::exr::error::Error::Aborted
+        })
+    });
+    match failure {
+        Some(error) => Err(error),
+        None => Ok(written.map_err(from_exr)?),
+    }
+}
+
+/// Rows of a block, as ZIP16 wants them.
+const BLOCK_ROWS: usize = 16;
+
+/// Blocks that are compressed at once.
+const BLOCKS_AT_ONCE: usize = 4;
+
+/// Takes the rows of an EXR file, from the top; see [`stream_exr`].
+pub struct ExrRows<'w, W> {
+    meta: &'w MetaData,
+    writer: &'w mut ChunkWriter<W>,
+    width: usize,
+    height: usize,
+    channels: Channels,
+    /// Rows that are in the file.
+    row: usize,
+    /// Values of rows to come.
+    pending: Vec<f32>,
+}
+
+impl<W: Write + Seek> ExrRows<'_, W> {
+    /// Takes the next rows.
+    ///
+    /// # Errors
+    /// If the output fails or there are more rows than the image has.
+    pub fn write_rows(&mut self, values: &[f32]) -> Result<(), ImageError> {
+        let group = BLOCKS_AT_ONCE * BLOCK_ROWS * self.row_len();
+        let mut values = values;
+        while !values.is_empty() {
+            let (now, later) = values.split_at(values.len().min(group - self.pending.len()));
+            self.pending.extend_from_slice(now);
+            values = later;
+            if self.pending.len() == group {
+                self.flush()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn row_len(&self) -> usize {
+        self.width * self.channels.count()
+    }
+
+    /// Compresses what is pending, in parallel, and writes it in order.
+    fn flush(&mut self) -> Result<(), ImageError> {
+        let rows = self.pending.len() / self.row_len();
+        if self.row + rows > self.height {
+            return Err(malformed("EXR", "there are more rows than the image has"));
+        }
+        let (first, meta) = (self.row, self.meta);
+        let (width, channels) = (self.width, self.channels);
+        let block_len = BLOCK_ROWS * self.row_len();
+        let chunks: Vec<_> = self
+            .pending
+            .par_chunks(block_len)
+            .enumerate()
+            .map(|(i, values)| {
+                let index = BlockIndex {
+                    layer: 0,
+                    pixel_position: Vec2(0, first + i * BLOCK_ROWS),
+                    pixel_size: Vec2(width, values.len() / (width * channels.count())),
+                    level: Vec2(0, 0),
+                };
+                let data = planar_bytes(values, width, channels);
+                UncompressedBlock { index, data }.compress_to_chunk(&meta.headers)
+            })
+            .collect();
+        for (i, chunk) in chunks.into_iter().enumerate() {
+            let index = first / BLOCK_ROWS + i;
+            self.writer.write_chunk(index, chunk.map_err(from_exr)?).map_err(from_exr)?;
+        }
+        self.row += rows;
+        self.pending.clear();
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), ImageError> {
+        let rows = self.row + self.pending.len() / self.row_len();
+        if rows < self.height {
+            let missing = self.height - rows;
+            return Err(malformed("EXR", format!("{missing} rows were never written")));
+        }
+        self.flush()
+    }
+}
+
+/// Rows as the format has them: in each row one channel after another, by name.
+fn planar_bytes(values: &[f32], width: usize, channels: Channels) -> Vec<u8> {
+    let count = channels.count();
+    let mut bytes = Vec::with_capacity(4 * values.len());
+    for row in values.chunks_exact(width * count) {
+        // B, G, R: backwards.
+        for channel in (0..count).rev() {
+            let plane = row.iter().skip(channel).step_by(count);
+            bytes.extend(plane.flat_map(|value| value.to_ne_bytes()));
+        }
+    }
+    bytes
 }
 
 fn from_exr(error: ::exr::error::Error) -> ImageError {

@@ -9,7 +9,7 @@ mod png;
 use thiserror::Error;
 
 #[cfg(feature = "exr")]
-pub use self::exr::{read_exr, write_exr};
+pub use self::exr::{ExrRows, read_exr, stream_exr, write_exr};
 pub use self::png::{BitDepth, PngEncoding, PngOptions, PngWriter, read_png, write_png};
 pub use encoding::{Encoding, linear_from_srgb, srgb_from_linear};
 pub use pfm::{PfmWriter, read_pfm, write_pfm};
@@ -119,6 +119,14 @@ impl Image {
             return Err(ImageError::NotFinite { x: x as u32, y: y as u32 });
         }
         Ok(Self { width, height, channels, values })
+    }
+
+    /// Whether an image of this size can be held.
+    ///
+    /// # Errors
+    /// If a side is 0 or there would be more than [`Image::MAX_SAMPLES`] numbers.
+    pub fn check_size(width: u32, height: u32, channels: Channels) -> Result<(), ImageError> {
+        checked_len(u64::from(width), u64::from(height), channels).map(drop)
     }
 
     /// Width in pixels.

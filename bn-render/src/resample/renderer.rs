@@ -117,6 +117,7 @@ impl<'a> Renderer<'a> {
     /// If the image is larger than [`Image::MAX_SAMPLES`].
     pub fn image(&self) -> Result<(Image, RenderStats), RenderError> {
         let window = self.layout.window;
+        Image::check_size(window.width, window.height, self.channels())?;
         let mut values = Vec::new();
         let stats = self.stream(&Unobserved, |band| {
             values.extend_from_slice(band.values);

@@ -83,6 +83,8 @@ pub struct SceneEntry {
     pub name: &'static str,
     /// What it shows, in a line.
     pub summary: &'static str,
+    /// The names of the options that concern it, as on the command line.
+    pub options: &'static [&'static str],
     make: fn(&Frame, &SceneOptions) -> Box<dyn Scene>,
 }
 
@@ -91,11 +93,13 @@ pub const SCENES: &[SceneEntry] = &[
     SceneEntry {
         name: "zone-plate",
         summary: "concentric waves whose frequency grows with the radius",
+        options: &["frequency"],
         make: |frame, o| Box::new(ZonePlate::new(frame, o.frequency)),
     },
     SceneEntry {
         name: "zone-plate-limited",
         summary: "the zone plate up to a highest frequency",
+        options: &["frequency", "cut-radius"],
         make: |frame, o| {
             let radius = o.cut_radius * 0.5 * f64::from(frame.width());
             Box::new(LimitedZonePlate::new(frame, o.frequency, radius))
@@ -104,22 +108,31 @@ pub const SCENES: &[SceneEntry] = &[
     SceneEntry {
         name: "checkerboard",
         summary: "an infinite checkerboard up to its horizon",
+        options: &["level", "horizon", "squares"],
         make: |frame, o| Box::new(Checkerboard::new(frame, o.horizon, o.squares, o.level)),
     },
-    SceneEntry { name: "plane-wave", summary: "a sinusoid", make: |_, o| Box::new(plane_wave(o)) },
+    SceneEntry {
+        name: "plane-wave",
+        summary: "a sinusoid",
+        options: &["frequency", "angle", "phase", "level", "amplitude"],
+        make: |_, o| Box::new(plane_wave(o)),
+    },
     SceneEntry {
         name: "constant",
         summary: "one grey level",
+        options: &["level"],
         make: |_, o| Box::new(Constant::grey(o.level)),
     },
     SceneEntry {
         name: "sphere",
         summary: "a ray-traced sphere and box with textures, edges and smooth shades",
+        options: &["contrast"],
         make: |frame, o| Box::new(SphereScene::new(frame, o.contrast)),
     },
     SceneEntry {
         name: "striped-cloth",
         summary: "stripes in many directions, for moiré",
+        options: &[],
         make: |frame, _| Box::new(StripedCloth::new(frame)),
     },
 ];

@@ -18,11 +18,7 @@ impl Supersampling {
         let window = frame.window();
         let (width, height) = (window.width as usize, window.height as usize);
         let channels = scene.channels().count();
-        let pixels = u64::from(window.width) * u64::from(window.height);
-        if pixels * channels as u64 > Image::MAX_SAMPLES {
-            let (width, height) = (u64::from(window.width), u64::from(window.height));
-            return Err(ImageError::Size { width, height });
-        }
+        Image::check_size(window.width, window.height, scene.channels())?;
         let mut sums = vec![0.0; width * height * channels];
         let mut taken = 0;
         for class in self.classes() {

@@ -10,6 +10,7 @@ mod machine;
 mod matching;
 mod nufft;
 mod optimizers;
+mod rendering;
 mod samplers;
 mod timing;
 
@@ -34,7 +35,7 @@ pub(crate) struct BenchArgs {
     #[arg(long)]
     quick: bool,
     /// Only this chapter: bessel, hankel, bessel-sums, nufft, estimators, samplers, optimizers,
-    /// matching or imitations
+    /// matching, imitations or rendering
     #[arg(long, value_name = "CHAPTER")]
     only: Option<String>,
 }
@@ -59,7 +60,7 @@ const SEED: u64 = 1;
 type Measure = fn(Effort) -> Outcome<Chapter>;
 
 /// The chapters, in the order in which data flow.
-const CHAPTERS: [(&str, Measure); 9] = [
+const CHAPTERS: [(&str, Measure); 10] = [
     ("bessel", bessel::measure),
     ("hankel", hankel::measure),
     ("bessel-sums", bessel_sums::measure),
@@ -69,6 +70,7 @@ const CHAPTERS: [(&str, Measure); 9] = [
     ("optimizers", optimizers::measure),
     ("matching", matching::measure),
     ("imitations", imitations::measure),
+    ("rendering", rendering::measure),
 ];
 
 pub(crate) fn run(args: &BenchArgs) -> Outcome {

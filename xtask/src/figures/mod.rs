@@ -5,12 +5,17 @@ mod correlations;
 mod designs;
 mod drawing;
 mod feasible;
+mod gallery;
 mod imitations;
 mod moves;
 mod optimization;
 mod pages;
 mod panels;
+mod spectra;
 mod studio;
+mod supersampling;
+mod test_scenes;
+mod zone_plates;
 
 use std::time::Instant;
 
@@ -29,7 +34,11 @@ pub(crate) struct FigureSpec {
 }
 
 /// All figures, in the thesis's order; one file a family.
-static FIGURES: [&[FigureSpec]; 8] = [
+static FIGURES: [&[FigureSpec]; 12] = [
+    test_scenes::FIGURES,
+    zone_plates::FIGURES,
+    supersampling::FIGURES,
+    spectra::FIGURES,
     moves::FIGURES,
     optimization::FIGURES,
     correlations::FIGURES,

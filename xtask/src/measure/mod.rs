@@ -2,6 +2,7 @@
 
 pub(crate) mod course;
 mod curves;
+pub(crate) mod downsampling;
 pub(crate) mod imitation;
 pub(crate) mod make;
 mod store;
@@ -15,7 +16,9 @@ use std::time::Instant;
 
 use bn_cli::Outcome;
 use bn_cli::analysis::{Analysis, Estimate};
+use bn_core::PointSet;
 use bn_samplers::Method;
+use rayon::prelude::*;
 
 use crate::thesis::{Quantity, RowSpec};
 pub(crate) use store::Store;
@@ -109,5 +112,20 @@ impl Workbench {
             row.method
         );
         Ok(Measured::Values(values))
+    }
+
+    /// The point sets of several rows, made side by side: for each at most so many, or the reason
+    /// why the method gave none.
+    pub(crate) fn point_sets(
+        &self,
+        rows: &[(RowSpec, u32)],
+    ) -> Outcome<Vec<Result<Vec<PointSet>, String>>> {
+        let (plan, store) = (self.plan, self.store.as_ref());
+        let of = |(row, most): &(RowSpec, u32)| {
+            let Some(method) = row.method() else { return Ok(Err("no such method".to_owned())) };
+            let made = make::sets(row, method, Plan { sets: plan.sets.min(*most), ..plan }, store)?;
+            Ok(made.map(|(sets, _)| sets).map_err(|error| error.to_string()))
+        };
+        rows.par_iter().map(of).collect()
     }
 }

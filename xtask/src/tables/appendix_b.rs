@@ -7,5 +7,5 @@ pub(super) const SPEC: TableSpec = TableSpec {
     id: "B",
     title: "Statistics of important sampling patterns (appendix B)",
     quantities: &Quantity::ALL,
-    make: Some(statistics::table),
+    make: statistics::table,
 };

@@ -7,5 +7,5 @@ pub(super) const SPEC: TableSpec = TableSpec {
     id: "3.1",
     title: "Effective Nyquist frequency and oscillation of common sampling patterns",
     quantities: &[Quantity::NuEff, Quantity::Omega, Quantity::DAvg],
-    make: Some(statistics::table),
+    make: statistics::table,
 };

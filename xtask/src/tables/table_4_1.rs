@@ -11,7 +11,7 @@ pub(super) const SPEC: TableSpec = TableSpec {
     id: "4.1",
     title: "Iterations until d_min and d_avg are reached from random points",
     quantities: &[],
-    make: Some(table),
+    make: table,
 };
 
 /// A row of the table.

@@ -7,5 +7,5 @@ pub(super) const SPEC: TableSpec = TableSpec {
     id: "4.2",
     title: "Geometric measures of uniformity for common irregular sampling patterns",
     quantities: &[Quantity::DMin, Quantity::DAvg, Quantity::RC],
-    make: Some(statistics::table),
+    make: statistics::table,
 };

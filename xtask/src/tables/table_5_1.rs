@@ -13,7 +13,7 @@ pub(super) const SPEC: TableSpec = TableSpec {
     id: "5.1",
     title: "Hankel transform pairs, closed form against numerical transform",
     quantities: &[],
-    make: Some(make),
+    make,
 };
 
 /// Digits to which a closed form must agree: the numerical transform promises an error of 1e-12 of

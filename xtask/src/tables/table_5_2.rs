@@ -7,5 +7,5 @@ pub(super) const SPEC: TableSpec = TableSpec {
     id: "5.2",
     title: "Frequency and spatial statistics of step and single-peak blue noise and others",
     quantities: &[Quantity::NuEff, Quantity::Omega, Quantity::DMin, Quantity::DAvg, Quantity::RC],
-    make: Some(statistics::table),
+    make: statistics::table,
 };

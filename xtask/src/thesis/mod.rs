@@ -4,6 +4,7 @@
 mod counts;
 mod expected;
 mod judge;
+mod psnr;
 mod quantity;
 mod rows;
 mod values;

@@ -1,0 +1,239 @@
+//! How the scene is sampled and reconstructed: a tiled pattern and a kernel, or a fixed few samples
+//! for each pixel.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+use bn_core::{Observer, PointSet, Seed};
+use bn_render::{
+    Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern, RenderError, RenderStats,
+    Renderer, SUPERSAMPLING, Scene, Supersampling, TileVariation,
+};
+use bn_samplers::Method;
+use clap::builder::PossibleValuesParser;
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+
+use super::super::method_values::{given_values, only_set};
+use super::scene::Subject;
+use crate::image_file::Rows;
+use crate::progress_bar::Bar;
+use crate::{Failure, Outcome};
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Sampling")]
+pub(super) struct SamplingArgs {
+    /// The pattern that is tiled over the image: a method of `bn list`, or a point file of one set
+    #[arg(long, value_name = "METHOD|FILE", required_unless_present = "supersampling")]
+    pattern: Option<String>,
+    /// Samples per pixel; n points fill a tile of sqrt(n/spp) pixels a side
+    #[arg(long, value_name = "SPP", default_value = "4", allow_negative_numbers = true)]
+    spp: f64,
+    /// Reconstruction kernel
+    #[arg(long, value_name = "KERNEL", default_value = "lanczos2",
+          value_parser = PossibleValuesParser::new(KERNELS.iter().map(|kernel| kernel.name())))]
+    kernel: String,
+    /// Divide by the kernel's weights that met samples, or by what they are on average
+    #[arg(long, value_name = "HOW", default_value = "density")]
+    normalize: Normalize,
+    /// Points of a method's pattern (default: 4096)
+    #[arg(short, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    n: Option<u32>,
+    /// Seed of a method's pattern and of tiles that vary
+    #[arg(short, long, value_name = "SEED", default_value = "1")]
+    seed: u64,
+    /// An option of the method, as `bn generate METHOD --help` has them; may be repeated
+    #[arg(short = 'O', long = "option", value_name = "NAME=VALUE")]
+    options: Vec<String>,
+    /// Turn tiles by quarters, shift them on the torus, or both, each in its own way
+    #[arg(long, value_name = "HOW", default_value = "none")]
+    vary_tiles: Vary,
+    /// Instead of a tiled pattern and a kernel: the same weighted samples for every pixel, one of the
+    /// sets below or a text file of lines `x y weight` (offsets from the pixel's centre)
+    #[arg(long, value_name = "SET|FILE",
+          conflicts_with_all = ["pattern", "spp", "normalize", "n", "options", "vary_tiles"])]
+    supersampling: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Normalize {
+    Density,
+    None,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Vary {
+    None,
+    Turn,
+    Shift,
+    Both,
+}
+
+/// What turns a scene into pixels.
+pub(super) enum Sampling {
+    /// A tiled pattern and a kernel.
+    Tiled(Box<Tiled>),
+    /// Periodic supersampling.
+    Periodic(Supersampling),
+}
+
+/// A pattern laid over the image plane, and how its samples become pixels.
+pub(super) struct Tiled {
+    pattern: Pattern,
+    table: KernelTable,
+    pub(super) normalization: Normalization,
+}
+
+impl SamplingArgs {
+    /// The kernel, which the reference uses too.
+    pub(super) fn kernel(&self) -> &'static dyn Kernel {
+        bn_render::kernel(&self.kernel).expect("the parser lets kernels pass only")
+    }
+
+    /// The sampling and its account.
+    pub(super) fn sampling(&self, bar: &Bar) -> Outcome<(Sampling, Value)> {
+        if let Some(name) = &self.supersampling {
+            let pattern = supersampling(name)?;
+            let account = json!({
+                "supersampling": name,
+                "samples_per_pixel": pattern.samples_per_pixel(),
+                "weights_per_pixel": pattern.weights_per_pixel(),
+            });
+            return Ok((Sampling::Periodic(pattern), account));
+        }
+        let name = self.pattern.as_deref().unwrap_or_default();
+        let (set, account) = match bn_samplers::find(name) {
+            Ok(method) => self.generated(method, bar)?,
+            Err(unknown) => (self.read(name, unknown)?, json!({"file": name})),
+        };
+        let variation = match self.vary_tiles {
+            Vary::None => TileVariation::Repeated,
+            Vary::Turn => TileVariation::Turned(self.tile_seed()),
+            Vary::Shift => TileVariation::Shifted(self.tile_seed()),
+            Vary::Both => TileVariation::TurnedAndShifted(self.tile_seed()),
+        };
+        let pattern = Pattern::tiled(&set, self.spp).map_err(Failure::usage)?.varied(variation);
+        let normalization = match self.normalize {
+            Normalize::Density => Normalization::Density,
+            Normalize::None => Normalization::None,
+        };
+        let table = KernelTable::new(self.kernel());
+        Ok((Sampling::Tiled(Box::new(Tiled { pattern, table, normalization })), account))
+    }
+
+    /// The seed of what sets tiles apart, unlike that of any set.
+    fn tile_seed(&self) -> Seed {
+        Seed::new(self.seed).for_set(u32::MAX)
+    }
+
+    fn generated(&self, method: &'static Method, bar: &Bar) -> Outcome<(PointSet, Value)> {
+        let mut options = Vec::new();
+        for option in &self.options {
+            let (name, value) = option.split_once('=').ok_or_else(|| {
+                Failure::misuse(format!("--option {option}: an option looks like radius=0.7"))
+            })?;
+            options.push((name.trim(), value.trim()));
+        }
+        let sampler =
+            method.with_values(given_values(method, &options)?).map_err(Failure::usage)?;
+        let n = self.n.unwrap_or(4096);
+        let sample = sampler.sample(n as usize, Seed::new(self.seed), bar).map_err(|error| {
+            let usage = error.is_usage();
+            let error = anyhow!(error).context(method.name);
+            if usage { Failure::usage(error) } else { Failure::failed(error) }
+        })?;
+        let account = json!({
+            "method": method.name, "n": sample.points.len(), "seed": self.seed, "options": self.options,
+        });
+        Ok((sample.points, account))
+    }
+
+    fn read(&self, name: &str, unknown: impl std::fmt::Display) -> Outcome<PointSet> {
+        let path = Path::new(name);
+        if path.extension().is_none() && !path.exists() && name != "-" {
+            return Err(Failure::misuse(format!("{unknown}, and no file of that name either")));
+        }
+        if self.n.is_some() || !self.options.is_empty() {
+            return Err(Failure::misuse(format!(
+                "-n and --option belong to methods; {name} is a file of points"
+            )));
+        }
+        only_set(path)
+    }
+}
+
+/// More bytes than the longest supersampling pattern takes.
+const LONGEST: u64 = 16 << 20;
+
+/// The supersampling pattern of this name, or of a file.
+fn supersampling(name: &str) -> Outcome<Supersampling> {
+    if let Some(pattern) = bn_render::supersampling(name) {
+        return Ok(pattern);
+    }
+    let path = PathBuf::from(name);
+    let size = std::fs::metadata(&path).map(|file| file.len());
+    let text = match size {
+        Ok(size) if size > LONGEST => Err(format!("{size} bytes are no pattern")),
+        _ => std::fs::read_to_string(&path).map_err(|error| error.to_string()),
+    };
+    let text = text.map_err(|error| {
+        let known = SUPERSAMPLING.join(", ");
+        Failure::misuse(format!("--supersampling {name}: {error}; there are {known}, and files"))
+    })?;
+    let parsed = Supersampling::parse(name, &text);
+    parsed.map_err(|error| Failure::usage(anyhow!(error).context(name.to_owned())))
+}
+
+impl Sampling {
+    /// Samples per pixel.
+    pub(super) fn samples_per_pixel(&self) -> f64 {
+        match self {
+            Self::Tiled(tiled) => tiled.pattern.samples_per_pixel(),
+            Self::Periodic(pattern) => pattern.samples_per_pixel() as f64,
+        }
+    }
+
+    /// Renders the subject's window, handing its rows over from the top.
+    pub(super) fn render(
+        &self,
+        subject: &Subject,
+        observer: &dyn Observer,
+        rows: &mut Rows<'_>,
+    ) -> Outcome<RenderStats> {
+        match self {
+            Self::Tiled(tiled) => tiled.render(&*subject.scene, &subject.frame, observer, rows),
+            Self::Periodic(pattern) => {
+                let (image, samples) =
+                    pattern.render(&*subject.scene, &subject.frame).map_err(Failure::usage)?;
+                rows(image.values())?;
+                Ok(RenderStats { samples, evaluated: samples, ..RenderStats::default() })
+            }
+        }
+    }
+}
+
+impl Tiled {
+    /// A pattern with the kernel and normalisation of another.
+    pub(super) fn new(
+        pattern: Pattern,
+        kernel: &'static dyn Kernel,
+        normalization: Normalization,
+    ) -> Self {
+        Self { pattern, table: KernelTable::new(kernel), normalization }
+    }
+
+    pub(super) fn render(
+        &self,
+        scene: &dyn Scene,
+        frame: &Frame,
+        observer: &dyn Observer,
+        rows: &mut Rows<'_>,
+    ) -> Outcome<RenderStats> {
+        let renderer = Renderer::new(scene, &self.pattern, &self.table, self.normalization, frame);
+        renderer.stream(observer, |band| rows(band.values)).map_err(|error| match error {
+            // The writer's own errors, among them a reader that went away, stay what they are.
+            RenderError::Output(error) => Failure::from(error),
+            other => Failure::failed(other),
+        })
+    }
+}

@@ -1,0 +1,176 @@
+//! Samples per second of the renderer: against nested loops, by kernel, by scene, and what skipping
+//! saves.
+
+use std::hint::black_box;
+
+use bn_core::{DVec2, PointSet, Seed};
+use bn_render::{
+    Channels, Checkerboard, Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern, Rect,
+    Renderer, SCENES, Scene, SceneOptions, Window, ZonePlate, kernel, scene,
+};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use rand::RngExt;
+
+fn jittered(m: u32) -> PointSet {
+    let mut rng = Seed::new(1).stream(0);
+    let mut jitter = |i: u32| (f64::from(i) + rng.random::<f64>()) / f64::from(m);
+    let points = (0..m * m).map(|i| DVec2::new(jitter(i % m), jitter(i / m)));
+    PointSet::wrapped(points.collect()).expect("valid points")
+}
+
+fn pattern(spp: f64) -> Pattern {
+    Pattern::tiled(&jittered(64), spp).expect("a pattern")
+}
+
+fn frame(width: u32, height: u32) -> Frame {
+    Frame::new(width, height).expect("a size")
+}
+
+fn table(name: &str) -> KernelTable {
+    KernelTable::new(kernel(name).expect("a kernel"))
+}
+
+/// Renders and gives the rows away.
+fn rendered(scene: &dyn Scene, pattern: &Pattern, table: &KernelTable, frame: &Frame) -> u64 {
+    let renderer = Renderer::new(scene, pattern, table, Normalization::Density, frame);
+    let stats = renderer.stream(&bn_core::Unobserved, |band| {
+        black_box(band.values);
+        Ok(())
+    });
+    stats.expect("nothing can fail").evaluated
+}
+
+/// What one writes first: for each sample all pixels within reach, one kernel value after another.
+fn nested_loops(
+    scene: &dyn Scene,
+    set: &PointSet,
+    spp: f64,
+    kernel: &dyn Kernel,
+    size: u32,
+) -> Vec<f64> {
+    let side = (set.len() as f64 / spp).sqrt();
+    let radius = kernel.radius();
+    let (mut sums, mut weights) =
+        (vec![0.0; (size * size) as usize], vec![0.0; (size * size) as usize]);
+    let tiles = (f64::from(size) / side) as i64 + 1;
+    for b in -1..=tiles {
+        for a in -1..=tiles {
+            for p in set.points() {
+                let at = (DVec2::new(a as f64, b as f64) + *p) * side;
+                let pixels = |x: f64| {
+                    let first = (x - radius - 0.5).ceil().max(0.0) as u32;
+                    let end = ((x + radius - 0.5).floor() + 1.0).clamp(0.0, f64::from(size)) as u32;
+                    first..end
+                };
+                if pixels(at.x).is_empty() || pixels(at.y).is_empty() {
+                    continue;
+                }
+                let value = scene.value(at)[0];
+                for j in pixels(at.y) {
+                    let wy = kernel.value(f64::from(j) + 0.5 - at.y);
+                    for i in pixels(at.x) {
+                        let w = wy * kernel.value(f64::from(i) + 0.5 - at.x);
+                        sums[(j * size + i) as usize] += w * value;
+                        weights[(j * size + i) as usize] += w;
+                    }
+                }
+            }
+        }
+    }
+    sums.iter().zip(&weights).map(|(sum, weight)| sum / weight).collect()
+}
+
+fn against_nested_loops(c: &mut Criterion) {
+    const SIZE: u32 = 256;
+    let (frame, set) = (frame(SIZE, SIZE), jittered(64));
+    let (plate, pattern, table) = (ZonePlate::new(&frame, 1.0), pattern(16.0), table("lanczos2"));
+    let mut group = c.benchmark_group("zone-plate-256-16spp-lanczos2");
+    group.throughput(Throughput::Elements(u64::from(SIZE * SIZE) * 16));
+    group.sample_size(20);
+    group.bench_function("nested-loops", |b| {
+        let lanczos = kernel("lanczos2").expect("a kernel");
+        b.iter(|| nested_loops(&plate, black_box(&set), 16.0, lanczos, SIZE));
+    });
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+    group.bench_function("renderer-one-thread", |b| {
+        one.install(|| b.iter(|| rendered(&plate, black_box(&pattern), &table, &frame)));
+    });
+    group.bench_function("renderer", |b| {
+        b.iter(|| rendered(&plate, black_box(&pattern), &table, &frame));
+    });
+    group.finish();
+}
+
+fn kernels(c: &mut Criterion) {
+    let frame = frame(512, 512);
+    let (plate, pattern) = (ZonePlate::new(&frame, 1.0), pattern(8.0));
+    let mut group = c.benchmark_group("kernels");
+    group.throughput(Throughput::Elements(512 * 512 * 8));
+    group.sample_size(20);
+    for kernel in KERNELS {
+        let table = KernelTable::new(*kernel);
+        group.bench_function(kernel.name(), |b| {
+            b.iter(|| rendered(&plate, black_box(&pattern), &table, &frame));
+        });
+    }
+    group.finish();
+}
+
+fn scenes(c: &mut Criterion) {
+    let frame = frame(512, 512);
+    let (pattern, table) = (pattern(4.0), table("lanczos2"));
+    let mut group = c.benchmark_group("scenes");
+    group.throughput(Throughput::Elements(512 * 512 * 4));
+    group.sample_size(20);
+    for entry in SCENES {
+        let scene =
+            scene(entry.name, &frame, &SceneOptions::default()).expect("defaults are valid");
+        group.bench_function(entry.name, |b| {
+            b.iter(|| rendered(&*scene, black_box(&pattern), &table, &frame));
+        });
+    }
+    group.finish();
+}
+
+/// A scene that keeps what it knows to itself.
+struct Silent<'a>(&'a dyn Scene);
+
+impl Scene for Silent<'_> {
+    fn channels(&self) -> Channels {
+        self.0.channels()
+    }
+    fn values(&self, u: &[f64], v: &[f64], out: &mut [f64]) {
+        self.0.values(u, v, out);
+    }
+    fn constant_over(&self, _: &Rect) -> Option<bn_render::Color> {
+        None
+    }
+}
+
+/// A board under a sky that takes half of the image, and a small window of a large image.
+fn skipping(c: &mut Criterion) {
+    let (pattern, table) = (pattern(8.0), table("lanczos2"));
+    let mut group = c.benchmark_group("skipping");
+    group.sample_size(20);
+    let half = frame(1024, 1024);
+    let board = Checkerboard::new(&half, 0.5, 12.0, 0.5);
+    group.bench_function("half-constant", |b| {
+        b.iter(|| rendered(&board, black_box(&pattern), &table, &half));
+    });
+    group.bench_function("half-constant-untold", |b| {
+        b.iter(|| rendered(&Silent(&board), black_box(&pattern), &table, &half));
+    });
+    let large = frame(3840, 2160);
+    let plate = ZonePlate::new(&large, 1.0);
+    for side in [64, 256, 1024] {
+        let window = Window { x: 1000, y: 700, width: side, height: side };
+        let window = large.cropped(window).expect("inside");
+        group.bench_with_input(BenchmarkId::new("window-of-4k", side), &window, |b, window| {
+            b.iter(|| rendered(&plate, black_box(&pattern), &table, window));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, against_nested_loops, kernels, scenes, skipping);
+criterion_main!(benches);

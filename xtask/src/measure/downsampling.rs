@@ -1,0 +1,84 @@
+//! The thesis's test at high sampling rates (§5.4.2): a large image made smaller, and how much noise
+//! that leaves.
+
+use bn_cli::{Failure, Outcome};
+use bn_core::{DVec2, PointSet, Seed, Unobserved};
+use bn_render::{
+    Convolution, Frame, Image, Interpolation, KernelTable, Normalization, Pattern, Picture,
+    Renderer, SphereScene, Supersampling, exact_convolution, mean_square_error,
+    peak_signal_to_noise,
+};
+use bn_samplers::{Hexagonal, Sampler as _};
+use rand::RngExt;
+
+/// Side of the large image, rasterised once at its pixels' centres.
+const LARGE: u32 = 2560;
+
+/// Side of the small one.
+const SMALL: u32 = 160;
+
+/// The scene's contrast: fixed once so that stochastic sampling at 16 samples per pixel gives the
+/// thesis's 32.2 dB.
+const CONTRAST: f64 = 0.814;
+
+/// The reference's samples per pixel, by a hexagonal lattice.
+const REFERENCE: f64 = 512.0;
+
+/// The seed of the shifts that tell the images of one set apart.
+const SHIFTS: u64 = 1;
+
+/// The large image, the kernel and the reference.
+pub(crate) struct Downsampling {
+    picture: Picture,
+    frame: Frame,
+    kernel: KernelTable,
+    reference: Image,
+}
+
+impl Downsampling {
+    /// The sphere scene, as an image continued bilinearly; the thesis's kernel.
+    pub(crate) fn new() -> Outcome<Self> {
+        let large = Frame::new(LARGE, LARGE).map_err(Failure::failed)?;
+        let frame = Frame::new(SMALL, SMALL).map_err(Failure::failed)?;
+        let scene = SphereScene::new(&large, CONTRAST);
+        let once = bn_render::supersampling("none").expect("in the list");
+        let (image, _) = Supersampling::render(&once, &scene, &large).map_err(Failure::failed)?;
+        let picture = Picture::covering(image, Interpolation::Bilinear, &frame);
+        let kernel = KernelTable::new(bn_render::kernel("lanczos2").expect("in the list"));
+        let lattice = Hexagonal.sample(4096, Seed::new(1), &Unobserved).map_err(Failure::failed)?;
+        let pattern = Pattern::tiled(&lattice.points, REFERENCE).map_err(Failure::failed)?;
+        let renderer = Renderer::new(&picture, &pattern, &kernel, Normalization::Density, &frame);
+        let reference = renderer.image().map_err(Failure::failed)?.0;
+        Ok(Self { picture, frame, kernel, reference })
+    }
+
+    /// PSNR of the image of number `index` from these points against the reference. Images of
+    /// different numbers have the points shifted differently on the torus.
+    pub(crate) fn psnr(
+        &self,
+        set: &PointSet,
+        index: u32,
+        samples_per_pixel: f64,
+        normalization: Normalization,
+    ) -> Outcome<f64> {
+        let mut rng = Seed::new(SHIFTS).stream(index);
+        let shift = DVec2::new(rng.random(), rng.random());
+        let shifted = PointSet::wrapped(set.points().iter().map(|p| *p + shift).collect());
+        let pattern = Pattern::tiled(&shifted.map_err(Failure::failed)?, samples_per_pixel)
+            .map_err(Failure::failed)?;
+        let renderer =
+            Renderer::new(&self.picture, &pattern, &self.kernel, normalization, &self.frame);
+        let image = renderer.image().map_err(Failure::failed)?.0;
+        let mse = mean_square_error(&image, &self.reference).map_err(Failure::failed)?;
+        Ok(peak_signal_to_noise(mse))
+    }
+
+    /// PSNR of the reference itself against the convolution by quadrature.
+    pub(crate) fn reference_psnr(&self) -> Outcome<f64> {
+        let kernel = bn_render::kernel(self.kernel.name()).expect("in the list");
+        let Convolution { image, .. } =
+            exact_convolution(&self.picture, kernel, &self.frame, 1e-7).map_err(Failure::failed)?;
+        let mse = mean_square_error(&image, &self.reference).map_err(Failure::failed)?;
+        Ok(peak_signal_to_noise(mse))
+    }
+}
