@@ -1,6 +1,6 @@
 //! Sets of points into one file or several.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
@@ -79,13 +79,13 @@ fn choose(path: &Path, format: Option<Format>, sets: usize) -> Outcome<Format> {
 const PLACE: &str = "{i}";
 
 fn has_place(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name.to_string_lossy().contains(PLACE))
+    path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.contains(PLACE))
 }
 
 /// The name of set `index`: in the place of `{i}`, else before the extension.
 fn numbered(path: &Path, index: usize) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    if name.contains(PLACE) {
+    let name = path.file_name().and_then(OsStr::to_str).filter(|name| name.contains(PLACE));
+    if let Some(name) = name {
         return path.with_file_name(name.replace(PLACE, &index.to_string()));
     }
     let mut stem = path.file_stem().unwrap_or_default().to_owned();

@@ -1,19 +1,15 @@
 //! Point sets whose statistics an independent program computed; see data/README.md.
 
-mod common;
-
-use bn_core::PointSet;
+use bn_core::{PointSet, io};
 use bn_geometry::{Coverage, Spacing, Triangulation, bond_orientational_order};
-use common::at;
 
 const VALUES: &str = include_str!("data/values.csv");
 
 fn read(name: &str) -> PointSet {
     let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
-    let bytes = std::fs::read(path).expect("the file is part of the sources");
-    let number = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    let pairs = bytes.chunks_exact(8).map(|pair| at(number(&pair[..4]), number(&pair[4..])));
-    PointSet::wrapped(pairs.collect()).expect("points")
+    let read = io::read_path(path.as_ref(), None, io::ReadOptions { wrap: true });
+    let [set] = <[PointSet; 1]>::try_from(read.expect("valid").into_sets()).expect("one set");
+    set
 }
 
 #[test]

@@ -167,7 +167,7 @@ impl Triangulation {
 
     /// Takes out point `index`. O(d²) for a point with d neighbours, d being 6 in the mean. Where a
     /// point is its own neighbour, which takes an empty circle of radius ½ or more, everything is
-    /// built anew, in O(n log n).
+    /// built anew, in O(n log n). At worst, at the hub of a wheel, d is of the order of n.
     ///
     /// # Panics
     /// If there is no such point.
@@ -244,8 +244,7 @@ impl Triangulation {
 
     #[inline]
     fn vertex(&self, index: usize) -> u32 {
-        let vertex = self.coincidences.vertex(index as u32);
-        assert!(self.mesh.has_vertex(vertex), "there is no point {index}");
-        vertex
+        assert!(self.contains(index), "there is no point {index}");
+        self.coincidences.vertex(index as u32)
     }
 }

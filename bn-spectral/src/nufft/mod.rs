@@ -363,7 +363,7 @@ impl<T: Real> Nufft<T> {
     fn prepare(&mut self, points: &[DVec2]) {
         assert!(u32::try_from(points.len()).is_ok(), "more points than 32-bit numbers");
         self.points.locate(points, &self.tables.design);
-        self.workers.prepare(&self.tables, self.parallel);
+        self.workers.prepare(self.parallel);
     }
 
     fn zero_column(&self) -> Vec<Complex<T>> {

@@ -97,54 +97,70 @@ pub(super) struct Worker<T> {
     pub(super) fft: FftScratch<T>,
 }
 
+impl<T: Real> Worker<T> {
+    fn new(tables: &Tables<T>) -> Self {
+        let zero = Complex::new(T::default(), T::default());
+        let height = tables.paired.height.max(tables.single.height);
+        Self {
+            strip: vec![zero; height * tables.paired.stride()],
+            lines: vec![zero; LANES * tables.grid()],
+            modes: vec![zero; 2 * tables.max_frequency + 1],
+            fft: tables.ffts.scratch(tables.grid()),
+        }
+    }
+}
+
 /// The scratch spaces of all threads, kept between evaluations.
-#[derive(Debug, Default)]
+///
+/// A thread takes one for each item and puts it back: nothing stays locked while a caller's
+/// function runs, so that it may use the thread pool itself.
+#[derive(Debug)]
 pub(super) struct Workers<T> {
-    workers: Vec<Mutex<Worker<T>>>,
+    idle: Mutex<Vec<Worker<T>>>,
     parallel: bool,
 }
 
+impl<T> Default for Workers<T> {
+    fn default() -> Self {
+        Self { idle: Mutex::default(), parallel: false }
+    }
+}
+
 impl<T: Real> Workers<T> {
-    /// Room for the threads of the current pool, or for one.
-    pub(super) fn prepare(&mut self, tables: &Tables<T>, parallel: bool) {
-        let threads = if parallel { rayon::current_num_threads() } else { 1 };
-        self.parallel = threads > 1;
-        let zero = Complex::new(T::default(), T::default());
-        while self.workers.len() < threads {
-            let height = tables.paired.height.max(tables.single.height);
-            self.workers.push(Mutex::new(Worker {
-                strip: vec![zero; height * tables.paired.stride()],
-                lines: vec![zero; LANES * tables.grid()],
-                modes: vec![zero; 2 * tables.max_frequency + 1],
-                fft: tables.ffts.scratch(tables.grid()),
-            }));
-        }
+    /// For the threads of the current pool, or for one.
+    pub(super) fn prepare(&mut self, parallel: bool) {
+        self.parallel = parallel && rayon::current_num_threads() > 1;
     }
 
-    /// The scratch space of the calling thread.
-    fn own(&self) -> MutexGuard<'_, Worker<T>> {
-        let thread = rayon::current_thread_index().unwrap_or(0);
-        // Uncontended: no two threads of one pool share an index, and no work is stolen inside.
-        self.workers[thread % self.workers.len()].lock().unwrap_or_else(PoisonError::into_inner)
+    fn idle(&self) -> MutexGuard<'_, Vec<Worker<T>>> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn with_one(&self, tables: &Tables<T>, task: impl FnOnce(&mut Worker<T>)) {
+        let idle = self.idle().pop();
+        let mut worker = idle.unwrap_or_else(|| Worker::new(tables));
+        task(&mut worker);
+        self.idle().push(worker);
     }
 
     /// Calls `task(index, item, worker)` for every item, on all threads. Each result depends on
     /// its own item alone, so the number of threads doesn't matter.
     pub(super) fn each<X: Send>(
         &self,
+        tables: &Tables<T>,
         items: Vec<X>,
         task: impl Fn(usize, X, &mut Worker<T>) + Sync,
     ) {
         if self.parallel {
-            items
-                .into_par_iter()
-                .enumerate()
-                .for_each(|(index, item)| task(index, item, &mut self.own()));
+            items.into_par_iter().enumerate().for_each(|(index, item)| {
+                self.with_one(tables, |worker| task(index, item, worker));
+            });
         } else {
-            let mut worker = self.own();
-            for (index, item) in items.into_iter().enumerate() {
-                task(index, item, &mut worker);
-            }
+            self.with_one(tables, |worker| {
+                for (index, item) in items.into_iter().enumerate() {
+                    task(index, item, worker);
+                }
+            });
         }
     }
 }

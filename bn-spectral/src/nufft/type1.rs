@@ -47,20 +47,24 @@ pub(super) fn transform_rows<T: Real>(
     let size = wanted.len() * strips.packing.grid_rows_each() * strips.height;
     spectrum.resize(wanted.len() * tables.grid(), Complex::new(T::default(), T::default()));
     // Without columns there is nothing to do, in chunks of any size.
-    workers.each(spectrum.chunks_mut(size.max(1)).collect(), |index, chunk: &mut [_], worker| {
-        let mut strip = Strip::new(strips, index, &mut worker.strip);
-        strip.clear();
-        let (before, shift) = strips.reaching(index, tables.width());
-        let own = strips.grid_rows_of(index);
-        for (rows, shift) in [(before, shift), (own, 0)] {
-            let (taps, points) = (&tables.taps, points.in_rows(rows));
-            T::spread(Spread { taps, points, shift, strengths, strip: &mut strip });
-        }
-        strip.fold();
-        strip.transform(&tables.ffts, Direction::Forward, &mut worker.fft);
-        let (strip, columns) = (&strip, wanted.clone());
-        T::to_columns(tables.simd, ToColumns { strip, columns, out: chunk });
-    });
+    workers.each(
+        tables,
+        spectrum.chunks_mut(size.max(1)).collect(),
+        |index, chunk: &mut [_], worker| {
+            let mut strip = Strip::new(strips, index, &mut worker.strip);
+            strip.clear();
+            let (before, shift) = strips.reaching(index, tables.width());
+            let own = strips.grid_rows_of(index);
+            for (rows, shift) in [(before, shift), (own, 0)] {
+                let (taps, points) = (&tables.taps, points.in_rows(rows));
+                T::spread(Spread { taps, points, shift, strengths, strip: &mut strip });
+            }
+            strip.fold();
+            strip.transform(&tables.ffts, Direction::Forward, &mut worker.fft);
+            let (strip, columns) = (&strip, wanted.clone());
+            T::to_columns(tables.simd, ToColumns { strip, columns, out: chunk });
+        },
+    );
 }
 
 /// A transformed column of the grid, about to become modes.
@@ -96,7 +100,7 @@ pub(super) fn transform_columns<T: Real, O: Send>(
     take: impl Fn(usize, O, &GridColumn<'_, T>, &mut [Complex<T>]) + Sync,
 ) {
     let grid = tables.grid();
-    workers.each(in_batches(outputs), |batch, outputs, worker| {
+    workers.each(tables, in_batches(outputs), |batch, outputs, worker| {
         let first = wanted.start + batch * LANES;
         let lines = &mut worker.lines[..outputs.len() * grid];
         for (column, line) in (first..).zip(lines.chunks_exact_mut(grid)) {

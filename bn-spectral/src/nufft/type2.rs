@@ -25,7 +25,7 @@ pub(super) fn transform_columns<T: Real>(
     let zero = Complex::new(T::default(), T::default());
     spectrum.resize(tables.columns(packing).len() * grid, zero);
     let batches = spectrum.chunks_mut(LANES * grid).collect();
-    workers.each(batches, |batch, lines: &mut [_], worker| {
+    workers.each(tables, batches, |batch, lines: &mut [_], worker| {
         for (index, line) in (batch * LANES..).zip(lines.chunks_exact_mut(grid)) {
             fill(index, &mut worker.modes);
             if packing == Packing::Paired && index == 0 {
@@ -126,7 +126,7 @@ fn each_strip<T: Real>(
 ) {
     let strips = tables.strips(packing);
     let shares = share(tables, strips, points, sums);
-    workers.each(shares, |index, share, worker| {
+    workers.each(tables, shares, |index, share, worker| {
         let mut strip = Strip::new(strips, index, &mut worker.strip);
         let columns = tables.columns(packing);
         T::from_columns(tables.simd, FromColumns { strip: &mut strip, columns, spectrum });

@@ -1,20 +1,26 @@
 //! Every example of the workspace is run.
 
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Duration;
+
 use bn_cli::{Failure, Outcome};
 use serde::Deserialize;
 
-use super::process::{cargo, cargo_output};
+use super::process::{self, build, cargo_output};
+
+/// No example shall take longer.
+const LIMIT: Duration = Duration::from_secs(60);
 
 /// What cargo says about the workspace.
 #[derive(Debug, Deserialize)]
 pub(super) struct Metadata {
     packages: Vec<Package>,
-    pub(super) target_directory: std::path::PathBuf,
+    target_directory: PathBuf,
 }
 
 #[derive(Debug, Deserialize)]
 struct Package {
-    name: String,
     targets: Vec<Target>,
 }
 
@@ -22,8 +28,6 @@ struct Package {
 struct Target {
     name: String,
     kind: Vec<String>,
-    #[serde(rename = "required-features", default)]
-    features: Vec<String>,
 }
 
 impl Metadata {
@@ -32,50 +36,47 @@ impl Metadata {
         serde_json::from_slice(&json).map_err(Failure::failed)
     }
 
-    /// The arguments of cargo that run each example.
-    fn examples(&self) -> Vec<Vec<String>> {
-        let mut runs = Vec::new();
-        for package in &self.packages {
-            for target in package.targets.iter().filter(|t| t.kind.iter().any(|k| k == "example")) {
-                let mut run: Vec<String> =
-                    ["run", "--quiet", "--release", "--package", &package.name, "--example"]
-                        .map(str::to_owned)
-                        .into();
-                run.push(target.name.clone());
-                if !target.features.is_empty() {
-                    run.extend(["--features".to_owned(), target.features.join(",")]);
-                }
-                runs.push(run);
-            }
-        }
-        runs
+    /// The names of all examples.
+    fn examples(&self) -> impl Iterator<Item = &str> {
+        let targets = self.packages.iter().flat_map(|package| &package.targets);
+        let examples = targets.filter(|t| t.kind.iter().any(|kind| kind == "example"));
+        examples.map(|target| target.name.as_str())
+    }
+
+    /// Where programs land that are built as the tests are.
+    pub(super) fn programs(&self) -> PathBuf {
+        self.target_directory.join("debug")
     }
 }
 
 pub(super) fn run() -> Outcome {
-    for example in Metadata::load()?.examples() {
-        let arguments: Vec<&str> = example.iter().map(String::as_str).collect();
-        eprintln!("$ cargo {}", arguments.join(" "));
-        cargo(&arguments, &[])?;
+    build(&["--examples"])?;
+    let metadata = Metadata::load()?;
+    let folder = metadata.programs().join("examples");
+    for name in metadata.examples() {
+        eprintln!("example {name}");
+        process::run(&mut Command::new(folder.join(name)), LIMIT, name)?;
     }
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
 
     #[test]
-    fn examples_are_found_with_their_features() {
+    fn examples_are_found() {
         let metadata: Metadata = serde_json::from_str(
             r#"{"target_directory": "t", "packages": [{"name": "a", "targets": [
                 {"name": "a", "kind": ["lib"]},
                 {"name": "first", "kind": ["example"]},
-                {"name": "second", "kind": ["example"], "required-features": ["x", "y"]}]}]}"#,
+                {"name": "second", "kind": ["example"], "required-features": ["x", "y"]}]},
+                {"name": "b", "targets": [{"name": "third", "kind": ["example"]}]}]}"#,
         )
         .expect("valid");
-        let runs: Vec<_> = metadata.examples().iter().map(|run| run.join(" ")).collect();
-        let head = "run --quiet --release --package a --example";
-        assert_eq!(runs, [format!("{head} first"), format!("{head} second --features x,y")]);
+        assert_eq!(metadata.examples().collect::<Vec<_>>(), ["first", "second", "third"]);
+        assert_eq!(metadata.programs(), Path::new("t/debug"));
     }
 }

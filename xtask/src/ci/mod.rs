@@ -9,10 +9,10 @@ use std::time::Instant;
 use bn_cli::{Failure, Outcome};
 use clap::Args;
 
-use crate::{bench, tables, workspace};
+use crate::{bench, figures, tables, workspace};
 use process::cargo;
 
-/// Format, lints, documentation, quick tables and benches, examples, the commands in the
+/// Format, lints, documentation, quick tables, benches and figures, examples, the commands in the
 /// documentation, and the tests; stops at the first that fails
 #[derive(Debug, Args)]
 pub(crate) struct CiArgs {
@@ -24,11 +24,15 @@ pub(crate) struct CiArgs {
 /// A step: what it is called and what it does.
 type Step = (&'static str, fn() -> Outcome);
 
-const STEPS: [Step; 7] = [
+const STEPS: [Step; 9] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[])),
     ("clippy", || {
         let what = ["clippy", "--workspace", "--all-targets", "--all-features"];
         cargo(&[&what[..], &["--", "-D", "warnings"]].concat(), &[])
+    }),
+    // Without bn-cli's drawing: what `cargo xtask tables` compiles.
+    ("clippy of the tables alone", || {
+        cargo(&["clippy", "--package", "xtask", "--", "-D", "warnings"], &[])
     }),
     ("documentation", || {
         cargo(
@@ -38,6 +42,7 @@ const STEPS: [Step; 7] = [
     }),
     ("quick tables", || tables::run(&tables::TablesArgs::for_ci())),
     ("quick benches", || bench::run(&bench::BenchArgs::for_ci())),
+    ("quick figures", || figures::run(&figures::FiguresArgs::for_ci())),
     ("examples", examples::run),
     ("commands in the documentation", readme::run),
 ];

@@ -15,6 +15,12 @@ pub(super) fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Outcome
     succeed(command.status(), || format!("cargo {}", arguments.join(" ")))
 }
 
+/// Builds what `targets` says as the tests are built, so that nothing is compiled for both.
+pub(super) fn build(targets: &[&str]) -> Outcome {
+    let how = ["build", "--quiet", "--profile", "test", "--workspace", "--all-features"];
+    cargo(&[&how[..], targets].concat(), &[])
+}
+
 /// What cargo prints on standard output.
 pub(super) fn cargo_output(arguments: &[&str]) -> Outcome<Vec<u8>> {
     let mut command = workspace::cargo();

@@ -10,7 +10,7 @@ use anyhow::Context;
 use bn_cli::{Failure, Outcome};
 
 use super::examples::Metadata;
-use super::process::{self, cargo};
+use super::process::{self, build};
 
 /// A command in the documentation shall not take longer.
 const LIMIT: Duration = Duration::from_secs(120);
@@ -18,8 +18,8 @@ const LIMIT: Duration = Duration::from_secs(120);
 /// Runs every line that starts with `bn ` in a code block of the README and of `docs/*.md`, one
 /// file's in order and in one empty folder, so that later ones find what earlier ones wrote.
 pub(super) fn run() -> Outcome {
-    cargo(&["build", "--quiet", "--release", "--package", "bn-cli", "--bin", "bn"], &[])?;
-    let programs = Metadata::load()?.target_directory.join("release");
+    build(&["--bins"])?;
+    let programs = Metadata::load()?.programs();
     let mut found = 0;
     for document in documents()? {
         let text = fs::read_to_string(&document)

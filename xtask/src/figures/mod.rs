@@ -63,6 +63,13 @@ pub(crate) struct FiguresArgs {
     quick: bool,
 }
 
+impl FiguresArgs {
+    /// What CI runs.
+    pub(crate) fn for_ci() -> Self {
+        Self { only: Vec::new(), list: false, quick: true }
+    }
+}
+
 pub(crate) fn run(args: &FiguresArgs) -> Outcome {
     let figures = select(&args.only)?;
     if args.list {
