@@ -103,13 +103,16 @@ impl MakeOperators<f64> for Portable {
     }
 }
 
+const GRAMMAR: &str = "formulas have numbers such as 0.001 (not 1e-3), x, y, PI, E, + - * / ^, \
+                       sqrt, abs, exp, ln, sin, cos, min, max and the like";
+
 fn from_formula(text: &str) -> anyhow::Result<DensityFunction> {
     let mend = "give an image (.png, .pfm) or a formula of x and y such as 0.1+x^2";
     if text.len() > MAX_FORMULA {
         return Err(anyhow!("longer than {MAX_FORMULA} characters; {mend}"));
     }
     let formula: FlatEx<f64, Portable> =
-        FlatEx::parse(text).map_err(|error| anyhow!("{error}; {mend}"))?;
+        FlatEx::parse(text).map_err(|_| anyhow!("not a formula; {mend}; {GRAMMAR}"))?;
     let names = formula.var_names();
     if let Some(name) = names.iter().find(|name| *name != "x" && *name != "y") {
         return Err(anyhow!("no variable is called {name}; {mend}"));

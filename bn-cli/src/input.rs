@@ -55,10 +55,17 @@ fn recognize(bytes: &[u8]) -> Format {
     }
 }
 
-/// A disk that fails is a failure; bad contents and names that lead nowhere are bad input.
+/// A disk that fails is a failure; bad contents and names that lead nowhere are bad input. Names
+/// the option where the mend is one.
 fn failure(error: ReadError) -> Failure {
     use std::io::ErrorKind::{IsADirectory, NotADirectory, NotFound};
     match error.problem() {
+        ReadProblem::OutOfDomain { .. } => Failure::misuse(format!("{error} (--wrap)")),
+        ReadProblem::Format(_) => {
+            Failure::misuse(format!("{error} (--format; --from of bn convert)"))
+        }
+        // Its text is part of the error's own.
+        ReadProblem::Npy(_) => Failure::misuse(error),
         ReadProblem::Io(io) if !matches!(io.kind(), NotFound | IsADirectory | NotADirectory) => {
             Failure::failed(anyhow!(error))
         }

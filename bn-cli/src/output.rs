@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 
 use crate::{Failure, Outcome};
 
@@ -78,6 +78,9 @@ fn renamed<T>(path: &Path, write: impl FnOnce(&File) -> Outcome<T>) -> Outcome<T
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
+    if !directory.is_dir() {
+        return Err(Failure::failed(anyhow!("there is no folder {}", directory.display())));
+    }
     let temporary = Unfinished::within(directory)?;
     let made = write(temporary.file.as_file())?;
     temporary.finish(&target)?;
@@ -111,8 +114,12 @@ fn fill<F: Write>(file: F, write: impl FnOnce(&mut dyn Write) -> Outcome) -> Out
 /// What `write` returns, or that standard output cannot be written.
 pub fn write_stdout(write: impl FnOnce(&mut dyn Write) -> Outcome) -> Outcome {
     let mut writer = BufWriter::with_capacity(1 << 16, io::stdout().lock());
-    write(&mut writer)?;
-    writer.flush().context("cannot write to standard output").map_err(Failure::failed)
+    let doing = "cannot write to standard output";
+    write(&mut writer).map_err(|failure| match failure.code() {
+        Failure::FAILED => failure.context(doing),
+        _ => failure,
+    })?;
+    writer.flush().context(doing).map_err(Failure::failed)
 }
 
 /// [`write_file`], or [`write_stdout`] for the name `-`.
@@ -121,6 +128,11 @@ pub fn write_stdout(write: impl FnOnce(&mut dyn Write) -> Outcome) -> Outcome {
 /// As those.
 pub fn write_to(path: &Path, write: impl FnOnce(&mut dyn Write) -> Outcome) -> Outcome {
     if path.as_os_str() == "-" { write_stdout(write) } else { write_file(path, write) }
+}
+
+/// A line on standard error. One that nobody can read is no reason to stop.
+pub fn remark(line: impl std::fmt::Display) {
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 /// Removes every unfinished file; for the moment of an interrupt, just before the process ends.

@@ -19,7 +19,7 @@ use crate::{Failure, Outcome, output};
 /// If the name tells no format, several sets are to go where one fits, or writing fails.
 pub fn write(path: &Path, format: Option<Format>, sets: &[PointSet]) -> Outcome {
     let format = choose(path, format, sets.len())?;
-    if has_place(path) || (sets.len() > 1 && !format.holds_ensembles()) {
+    if one_a_file(path) || (sets.len() > 1 && !format.holds_ensembles()) {
         if path.as_os_str() == "-" {
             return Err(holds_one(format, sets.len()));
         }
@@ -78,7 +78,8 @@ fn choose(path: &Path, format: Option<Format>, sets: usize) -> Outcome<Format> {
 
 const PLACE: &str = "{i}";
 
-fn has_place(path: &Path) -> bool {
+/// Whether the name asks for one file a set.
+pub fn one_a_file(path: &Path) -> bool {
     path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.contains(PLACE))
 }
 

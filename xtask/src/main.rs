@@ -11,6 +11,7 @@ mod workspace;
 
 use std::process::ExitCode;
 
+use bn_cli::output::remark;
 use bn_cli::{Failure, Outcome};
 use clap::{Parser, Subcommand};
 
@@ -41,13 +42,13 @@ fn main() -> ExitCode {
         std::process::exit(130);
     });
     if let Err(error) = interrupted {
-        eprintln!("xtask: interrupts will leave temporary files behind: {error}");
+        remark(format!("xtask: interrupts will leave temporary files behind: {error}"));
     }
     match run(&Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) if failure.is_broken_pipe() => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("xtask: {failure}");
+            remark(format!("xtask: {failure}"));
             ExitCode::from(failure.code())
         }
     }

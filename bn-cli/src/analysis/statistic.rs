@@ -136,11 +136,28 @@ impl Estimate {
         let std_error = (left_out.len() > 1).then(|| ((m - 1.0) / m * squares).sqrt());
         Self { value, std_error }
     }
+
+    /// The estimate of a value known in steps only: its error is not below that of rounding,
+    /// step/√12.
+    #[must_use]
+    pub fn rounded_to(self, step: f64) -> Self {
+        let rounding = step / 12_f64.sqrt();
+        Self { std_error: self.std_error.map(|error| error.hypot(rounding)), ..self }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn steps_bound_the_error_from_below() {
+        let exact = Estimate { value: 0.75, std_error: Some(0.0) };
+        assert_eq!(exact.rounded_to(0.12).std_error, Some(0.12 / 12_f64.sqrt()));
+        let noisy = Estimate { value: 0.75, std_error: Some(3.0) }.rounded_to(4.0 * 12_f64.sqrt());
+        assert_eq!(noisy.std_error, Some(5.0));
+        assert_eq!(Estimate { value: 0.75, std_error: None }.rounded_to(0.1).std_error, None);
+    }
 
     #[test]
     fn keys_are_read_back() {

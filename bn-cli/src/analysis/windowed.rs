@@ -1,6 +1,6 @@
 //! What comes from pair distances through the thesis's window.
 
-use bn_core::{Curve, PointSet};
+use bn_core::{Curve, Density, PointSet};
 use bn_spectral::WindowedSpectrum;
 
 use super::Estimate;
@@ -8,6 +8,7 @@ use super::Estimate;
 /// The spectra of an ensemble by the thesis's estimator; see [`WindowedSpectrum`].
 #[derive(Clone, Debug)]
 pub struct Windowed {
+    density: Density,
     each: Vec<WindowedSpectrum>,
     mean: WindowedSpectrum,
 }
@@ -17,7 +18,7 @@ impl Windowed {
         let spectra = WindowedSpectrum::of_each(sets)
             .and_then(|each| Ok((WindowedSpectrum::mean(&each)?, each)));
         let (mean, each) = spectra.expect("an analysis holds sets of one size");
-        Self { each, mean }
+        Self { density: sets[0].density(), each, mean }
     }
 
     /// The radial power spectrum, mean over the sets.
@@ -26,7 +27,10 @@ impl Windowed {
     }
 
     pub(super) fn effective_nyquist(&self) -> Option<Estimate> {
-        self.estimate(|spectrum| Some(spectrum.effective_nyquist()?.value()))
+        let estimate = self.estimate(|spectrum| Some(spectrum.effective_nyquist()?.value()))?;
+        // It is a multiple of half the samples' distance.
+        let step = 0.5 * self.power().step() / self.density.grid_nyquist();
+        Some(estimate.rounded_to(step))
     }
 
     pub(super) fn oscillation(&self) -> Option<Estimate> {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bn_core::io::Format;
 use bn_core::{Curve, PointSet};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Command, ValueEnum};
 
 use super::Global;
@@ -14,17 +15,18 @@ use crate::{Failure, Outcome, input, output};
 
 #[derive(Debug, Args)]
 pub(super) struct Analyze {
-    /// Point files; `-` is standard input
+    /// Point files; `-` is standard input, its format told by its contents (but .rps: `--format rps`)
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// One result for all sets of all files together, instead of one for each file
     #[arg(long, visible_alias = "avg")]
     average: bool,
-    /// JSON on standard output: an array with an object for each file, one object with --average
+    /// JSON on standard output: an array with an object for each file, one object with --average.
+    /// null is what was not asked for, is not defined for the sets, or was left out for their size
     #[arg(long)]
     json: bool,
     /// Compute these statistics and nothing else
-    #[arg(long, value_name = "KEY,...", value_delimiter = ',', value_parser = statistic)]
+    #[arg(long, value_name = "KEY,...", value_delimiter = ',', value_parser = statistics())]
     only: Option<Vec<Statistic>>,
     /// Estimator of `nu_eff` and omega (default: both, windowed only up to 200000 points a set)
     #[arg(long, value_enum)]
@@ -80,8 +82,10 @@ pub(super) fn command() -> Command {
         )
 }
 
-fn statistic(key: &str) -> Result<Statistic, String> {
-    key.parse().map_err(|failure: Failure| failure.to_string())
+/// Keys as clap's possible values, so that shells complete them.
+fn statistics() -> impl TypedValueParser<Value = Statistic> {
+    let keys = PossibleValuesParser::new(Statistic::ALL.map(Statistic::key));
+    keys.try_map(|key| key.parse::<Statistic>().map_err(|failure| failure.to_string()))
 }
 
 /// The sets that one result is for.
@@ -148,6 +152,16 @@ impl Analyze {
             && !matches!(curve, CurveName::RadialPower)
         {
             return Err(Failure::misuse("--method belongs to the curve radial-power alone"));
+        }
+        let same = |file: &PathBuf, output: &Path| {
+            let real = |path: &Path| path.canonicalize().ok();
+            real(file).is_some_and(|file| Some(file) == real(output))
+        };
+        if let Some(output) = &self.output
+            && self.files.iter().any(|file| same(file, output))
+        {
+            let name = output.display();
+            return Err(Failure::misuse(format!("-o {name}: the curve would replace its points")));
         }
         if self.files.iter().filter(|file| file.as_os_str() == "-").count() > 1 {
             return Err(Failure::misuse("standard input (-) can be read only once"));
@@ -237,7 +251,7 @@ impl Group {
             None => Ok(()),
             Some(i) => Err(Failure::misuse(format!(
                 "{}: set {i} has {} points but set 0 has {n}; sets of different size are not \
-                 averaged: put them into files of their own",
+                 averaged: `bn convert` puts them into files of their own, to be analyzed one by one",
                 self.files.join(" "),
                 self.sets[i].len()
             ))),

@@ -10,7 +10,7 @@ use crate::{Outcome, output_points};
 
 #[derive(Debug, Args)]
 pub(super) struct Convert {
-    /// File to read; `-` is standard input
+    /// File to read; `-` is standard input, its format told by its contents (but .rps: `--from rps`)
     input: PathBuf,
     /// File to write; `-` is standard output
     output: PathBuf,
@@ -31,7 +31,9 @@ pub(super) fn command() -> Command {
             .about("Convert between point formats")
             .long_about(
                 "Convert between point formats: .txt .rps .dat .csv .npy .json .eps. Formats of \
-                 64-bit numbers and text keep every bit; .rps holds 32-bit numbers.",
+                 64-bit numbers and text keep every bit; .rps holds 32-bit numbers. Several sets go \
+                 into one .dat, .npy or .json, else into name_0.ext, name_1.ext, ...; {i} in the \
+                 name asks for one file a set and says where the index goes.",
             )
             .after_help("Example: bn convert points.rps points.npy"),
     )

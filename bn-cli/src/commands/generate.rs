@@ -142,12 +142,45 @@ pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
             global.remark(format!("{set}{note}"));
         }
     }
+    if let Some(remark) = unconverged(&reports) {
+        global.remark(remark);
+    }
+    if sets.len() > 1 && sets.iter().all(|set| *set == sets[0]) {
+        global.remark(format!("all sets are equal: {name} takes no random number here"));
+    }
     output_points::write(&args.output, format, &sets)?;
     if args.json {
         let account = account(method, &args, &options, &sets, &reports, seconds);
         return output::write_stdout(|w| Ok(writeln!(w, "{account:#}")?));
     }
     Ok(())
+}
+
+/// What is to be said of runs that ended before they converged and have no note of it.
+fn unconverged(reports: &[Report]) -> Option<String> {
+    use bn_samplers::FigureValue;
+    let figure = |report: &Report, name: &str| {
+        report.figures.iter().find(|figure| figure.name == name).map(|figure| figure.value)
+    };
+    let early = |report: &&Report| {
+        figure(report, "converged") == Some(FigureValue::Holds(false)) && report.notes.is_empty()
+    };
+    let ended: Vec<&Report> = reports.iter().filter(early).collect();
+    let first = ended.first()?;
+    let of = if reports.len() > 1 {
+        format!(" ({} of {} sets)", ended.len(), reports.len())
+    } else {
+        String::new()
+    };
+    let after = match figure(first, "iterations") {
+        Some(FigureValue::Count(iterations)) => format!(" after {iterations} iterations"),
+        _ => String::new(),
+    };
+    let residual = match figure(first, "residual") {
+        Some(FigureValue::Real(residual)) => format!(", residual {residual:.3e}"),
+        _ => String::new(),
+    };
+    Some(format!("stopped{after} without having converged{residual}{of}"))
 }
 
 /// The method's options that were typed, as text.
@@ -166,7 +199,8 @@ fn check_equal_sizes(method: &Method, args: &Generate, options: &[(&str, &str)])
         None => Format::from_path(&args.output) == Ok(Format::Npy),
     };
     let exact = options.iter().any(|&(name, text)| name == "exact" && text != "false");
-    if npy && args.sets > 1 && method.counts == CountRule::Approximate && !exact {
+    let together = !output_points::one_a_file(&args.output);
+    if npy && together && args.sets > 1 && method.counts == CountRule::Approximate && !exact {
         return Err(Failure::misuse(format!(
             "sets of {} differ in size, and .npy holds sets of one size: write a .dat or .json",
             method.name

@@ -34,7 +34,7 @@ impl Global {
     /// A remark for the person at the terminal.
     fn remark(&self, message: impl std::fmt::Display) {
         if !self.quiet {
-            eprintln!("bn: {message}");
+            crate::output::remark(format_args!("bn: {message}"));
         }
     }
 }
@@ -49,7 +49,7 @@ pub fn command() -> Command {
              The domain is the unit torus: [0,1) x [0,1) with opposite sides joined. Distances are \
              reported in units of the hexagonal lattice's spacing, frequencies in units of \
              sqrt(n)/2. Results go to standard output, remarks to standard error. Exit codes: 0 \
-             done, 1 the run failed, 2 bad use or bad input.",
+             done, 1 the run failed, 2 bad use or bad input, 130 interrupted.",
         )
         .after_help(
             "Examples:\n  bn list\n  bn generate dart-throwing -n 4096 --seed 1 -o points.txt\n  \

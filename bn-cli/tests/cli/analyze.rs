@@ -124,6 +124,12 @@ fn bad_files_are_named_with_the_mend() {
         assert!(words.stdout.is_empty(), "{name}");
         assert_eq!(words.stderr.trim().lines().count(), 1, "{}", words.stderr);
     }
+    let npy = folder.bn("analyze bad.npy").stderr;
+    assert_eq!(npy.matches("NumPy").count(), 1, "{npy}");
+    folder.bn("analyze outside.txt").refused(2, &["line 2", "--wrap"]);
+    folder.bn("analyze unknown.xyz").refused(2, &["--format"]);
+    folder.bn("analyze outside.txt --wrap --curve rdf -o outside.txt").refused(2, &["replace"]);
+    folder.bn("analyze outside.txt --wrap --curve rdf -o no/c.csv").refused(1, &["no folder no"]);
     folder.bn("analyze absent.txt").refused(2, &["absent.txt"]);
     folder.bn("analyze").refused(2, &["FILE"]);
     folder.bn("analyze .").refused(2, &["."]);

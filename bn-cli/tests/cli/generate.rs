@@ -87,6 +87,7 @@ fn bad_use_is_said_in_one_line() {
     folder.bn("generate jittered --width nan").refused(2, &["--width"]);
     folder.bn("generate stochastic -o points.xyz").refused(2, &["points.xyz", "txt"]);
     folder.bn("generate stochastic -o absent/points.txt").refused(1, &["absent/points.txt"]);
+    folder.bn("generate stochastic --density x+").refused(2, &["x+", "numbers such as 0.001"]);
     folder.bn("--threads 0 list").refused(2, &["--threads"]);
     folder.bn("convert absent.txt out.npy").refused(2, &["absent.txt"]);
     assert!(folder.names().is_empty(), "{:?}", folder.names());
@@ -98,6 +99,60 @@ fn a_full_disk_is_a_failure() {
     Folder::new()
         .bn("generate stochastic -n 64 -o /dev/full --format txt")
         .refused(1, &["/dev/full"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn remarks_that_nobody_can_read_stop_nothing() {
+    use std::process::Command;
+    let folder = Folder::new();
+    let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let status = Command::new(env!("CARGO_BIN_EXE_bn"))
+        .args(["generate", "maximal-poisson-disk", "-n", "64", "-o", "a.txt"])
+        .current_dir(folder.path())
+        .stderr(full)
+        .status()
+        .unwrap();
+    assert_eq!(status.code(), Some(0));
+    assert_eq!(folder.names(), ["a.txt"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn signals_leave_no_temporary_file() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    for signal in ["INT", "TERM", "HUP"] {
+        let folder = Folder::new();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_bn"))
+            .args(["generate", "r2", "-n", "20000000", "-o", "a.txt"])
+            .current_dir(folder.path())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Until it writes; some seconds of writing follow.
+        let start = Instant::now();
+        while folder.names().is_empty() && start.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        assert!(folder.names()[0].starts_with(".bn-"), "{:?}", folder.names());
+        let kill = ["-s", signal, "--", &child.id().to_string()].map(str::to_owned);
+        assert!(Command::new("kill").args(kill).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}");
+        assert!(folder.names().is_empty(), "{signal}: {:?}", folder.names());
+    }
+}
+
+#[test]
+fn what_ends_early_or_repeats_itself_is_told() {
+    let folder = Folder::new();
+    let early = folder.bn("generate lloyd -n 64 --iterations 2 -o l.txt").done();
+    assert!(early.stderr.contains("2 iterations without having converged"), "{}", early.stderr);
+    let early = folder.bn("generate lloyd -n 64 --iterations 2 --sets 3 -o l.npy").done();
+    assert!(early.stderr.contains("3 of 3 sets"), "{}", early.stderr);
+    let equal = folder.bn("generate regular -n 64 --sets 2 -o r.npy").done();
+    assert!(equal.stderr.contains("all sets are equal"), "{}", equal.stderr);
+    assert_eq!(folder.bn("generate stochastic -n 9 --sets 2 -o s.npy").done().stderr, "");
 }
 
 #[test]

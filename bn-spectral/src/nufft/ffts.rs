@@ -32,13 +32,12 @@ pub(super) struct FftScratch<T> {
 
 impl<T: Real> Ffts<T> {
     pub(super) fn new(size: usize, portable: bool) -> Self {
-        match if portable { None } else { T::plan_ffts(size) } {
-            Some([forward, inverse]) => Self::Rustfft { forward, inverse },
-            None => {
-                let simd = if portable { Simd::portable() } else { Simd::detect() };
-                Self::Own { batch: BatchFft::new(size), simd }
-            }
+        let rustfft = if portable { None } else { T::plan_ffts(size) };
+        if let Some([forward, inverse]) = rustfft {
+            return Self::Rustfft { forward, inverse };
         }
+        let simd = if portable { Simd::portable() } else { Simd::detect() };
+        Self::Own { batch: BatchFft::new(size), simd }
     }
 
     pub(super) fn scratch(&self, size: usize) -> FftScratch<T> {
