@@ -1,4 +1,4 @@
-//! The one-dimensional FFTs of a plan: rustfft's, or our own, whose bits can be the same everywhere.
+//! The one-dimensional FFTs of a plan: rustfft's for speed, or our own with the same bits everywhere.
 
 use std::sync::Arc;
 
@@ -11,8 +11,8 @@ use super::simd::Simd;
 
 /// Transforms of one length in both directions.
 pub(super) enum Ffts<T> {
-    Rustfft { forward: Arc<dyn Fft<T>>, inverse: Arc<dyn Fft<T>> },
-    Own { batch: BatchFft<T>, simd: Simd },
+    Fastest { forward: Arc<dyn Fft<T>>, inverse: Arc<dyn Fft<T>> },
+    Portable { batch: BatchFft<T>, simd: Simd },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,20 +32,20 @@ pub(super) struct FftScratch<T> {
 
 impl<T: Real> Ffts<T> {
     pub(super) fn new(size: usize, portable: bool) -> Self {
-        let rustfft = if portable { None } else { T::plan_ffts(size) };
-        if let Some([forward, inverse]) = rustfft {
-            return Self::Rustfft { forward, inverse };
+        if portable {
+            Self::Portable { batch: BatchFft::new(size), simd: Simd::portable() }
+        } else {
+            let [forward, inverse] = T::plan_ffts(size);
+            Self::Fastest { forward, inverse }
         }
-        let simd = if portable { Simd::portable() } else { Simd::detect() };
-        Self::Own { batch: BatchFft::new(size), simd }
     }
 
     pub(super) fn scratch(&self, size: usize) -> FftScratch<T> {
         let (numbers, lanes) = match self {
-            Self::Rustfft { forward, inverse } => {
+            Self::Fastest { forward, inverse } => {
                 (forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len()), 0)
             }
-            Self::Own { .. } => (0, 2 * size),
+            Self::Portable { .. } => (0, 2 * size),
         };
         let zero = Complex::new(T::default(), T::default());
         FftScratch { numbers: vec![zero; numbers], lanes: vec![Lanes::zero(); lanes] }
@@ -61,13 +61,13 @@ impl<T: Real> Ffts<T> {
         scratch: &mut FftScratch<T>,
     ) {
         match self {
-            Self::Rustfft { forward, inverse } => {
+            Self::Fastest { forward, inverse } => {
                 let fft = if direction == Direction::Forward { forward } else { inverse };
                 for signal in signals.chunks_exact_mut(stride) {
                     fft.process_with_scratch(&mut signal[..size], &mut scratch.numbers);
                 }
             }
-            Self::Own { batch, simd } => {
+            Self::Portable { batch, simd } => {
                 for signals in signals.chunks_mut(LANES * stride) {
                     let inverse = direction == Direction::Inverse;
                     let scratch = &mut scratch.lanes[..];

@@ -18,7 +18,7 @@ fn bits<T: Real>(any: bool) -> Vec<(u64, u64)> {
     if any {
         plan.tables.simd = Simd::any();
         plan.tables.taps.simd = Simd::any();
-        let Ffts::Own { simd, .. } = &mut plan.tables.ffts else { panic!("not portable") };
+        let Ffts::Portable { simd, .. } = &mut plan.tables.ffts else { panic!("not portable") };
         *simd = Simd::any();
     }
     let mut modes = HalfPlane::zeros(k);

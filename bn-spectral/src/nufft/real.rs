@@ -32,7 +32,7 @@ pub(super) mod sealed {
     };
 
     /// What is compiled once for each type, here: a generic function would be compiled anew by
-    /// every crate that uses a transform, and the FFTs take half a minute.
+    /// every crate that uses a transform, and the FFTs take a minute.
     pub trait Sealed: Sized {
         fn spread(job: Spread<'_, '_, Self>);
         fn gather(job: Gather<'_, '_, Self>);
@@ -41,14 +41,13 @@ pub(super) mod sealed {
         fn from_columns(simd: Simd, job: FromColumns<'_, '_, Self>);
         fn scale(simd: Simd, job: Scale<'_, Self>);
         fn transform_batch(simd: Simd, job: BatchTransform<'_, Self>);
-        /// rustfft's transforms of this size with e^(−2πi…) and e^(+2πi…), if they are compiled for
-        /// the type.
-        fn plan_ffts(size: usize) -> Option<[Arc<dyn Fft<Self>>; 2]>;
+        /// Transforms of this size with e^(−2πi…) and e^(+2πi…), the fastest that this CPU has.
+        fn plan_ffts(size: usize) -> [Arc<dyn Fft<Self>>; 2];
     }
 }
 
 macro_rules! implement {
-    ($($real:ty: $plan_ffts:expr),*) => {$(
+    ($($real:ty)*) => {$(
         impl sealed::Sealed for $real {
             fn spread(job: Spread<'_, '_, Self>) {
                 job.taps.simd.run(job);
@@ -78,8 +77,9 @@ macro_rules! implement {
                 simd.run(job);
             }
 
-            fn plan_ffts(size: usize) -> Option<[Arc<dyn Fft<Self>>; 2]> {
-                $plan_ffts(size)
+            fn plan_ffts(size: usize) -> [Arc<dyn Fft<Self>>; 2] {
+                let mut planner = FftPlanner::new();
+                [planner.plan_fft_forward(size), planner.plan_fft_inverse(size)]
             }
         }
 
@@ -104,11 +104,4 @@ macro_rules! implement {
     )*};
 }
 
-fn plan_doubles(size: usize) -> [Arc<dyn Fft<f64>>; 2] {
-    let mut planner = FftPlanner::new();
-    [planner.plan_fft_forward(size), planner.plan_fft_inverse(size)]
-}
-
-// rustfft takes half a minute to compile for a type; single precision does with our own FFTs, which
-// keep up with it in batches of columns.
-implement!(f32: |_| None, f64: |size| Some(plan_doubles(size)));
+implement!(f32 f64);
