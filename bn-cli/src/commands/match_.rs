@@ -21,7 +21,7 @@ use crate::{Failure, Outcome, input, output, output_points};
 pub(super) struct Match {
     #[command(flatten)]
     target: TargetArgs,
-    /// Number of points (default: 4096, or as many as the models of --like have)
+    /// Number of points (default: 4096, or as many as the models of --like or --start have)
     #[arg(short, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     n: Option<u32>,
     /// Seed of the random numbers; the same seed gives the same bytes
@@ -60,8 +60,9 @@ pub(super) fn command() -> Command {
         .about("Make patterns that have a given spectrum")
         .long_about(
             "Make patterns that have a given spectrum. Targets that are known to be unrealizable are \
-             refused with the reason, unless --best-effort; `bn realize` tells more. The residual is \
-             the root mean square of ring means less the target over all modes up to 6 sqrt(n).",
+             refused with the reason, unless --best-effort; `bn realize` tells more. The thesis's \
+             own single peak (the default parameters) is not realizable as printed and is matched \
+             as well as possible all the same. The residual is the root mean square of ring means less the target over all modes up to 6 sqrt(n).",
         )
         .after_help(
             "Examples:\n  bn match --target step -n 4096 -o step.txt\n  \
@@ -77,7 +78,9 @@ pub(super) fn run(args: &Match, global: &Global) -> Outcome {
         ));
     }
     output_points::check(&args.output, args.format, args.sets as usize)?;
-    let wanted = args.target.target(args.n, None)?;
+    let first = args.start.as_deref().map(|file| start(file, args.n)).transpose()?;
+    let n = args.n.or(first.as_ref().map(|points| points.len() as u32));
+    let wanted = args.target.target(n, None)?;
     if let Some(objection) = wanted.objection() {
         if !args.best_effort && !wanted.is_default {
             return Err(Failure::misuse(format!(
@@ -88,7 +91,7 @@ pub(super) fn run(args: &Match, global: &Global) -> Outcome {
         global.remark(format!("{}: {objection}; coming as near as possible", wanted.name));
     }
     let start = Instant::now();
-    let samples = args.samples(&wanted, global)?;
+    let samples = args.samples(&wanted, first, global)?;
     let seconds = start.elapsed().as_secs_f64();
     let (sets, reports): (Vec<PointSet>, Vec<Report>) =
         samples.into_iter().map(|sample| (sample.points, sample.report)).unzip();
@@ -101,27 +104,42 @@ pub(super) fn run(args: &Match, global: &Global) -> Outcome {
     Ok(())
 }
 
+/// The points to go on from, as many as are wanted.
+fn start(file: &Path, n: Option<u32>) -> Outcome<PointSet> {
+    let points = input::read(file, None, false)?.into_sets().swap_remove(0);
+    match n {
+        Some(n) if n as usize != points.len() => Err(Failure::misuse(format!(
+            "--start {}: it has {} points, but -n is {n}",
+            file.display(),
+            points.len()
+        ))),
+        _ => Ok(points),
+    }
+}
+
 fn real(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
 
 impl Match {
-    fn matching(&self, wanted: &Wanted) -> Outcome<SpectrumMatching> {
+    fn matching(&self, wanted: &Wanted, start: Option<PointSet>) -> SpectrumMatching {
         let algorithm = Algorithm::named(&self.algorithm).unwrap_or_default();
         let algorithm = match self.iterations {
             Some(iterations) => algorithm.with_iterations(iterations),
             None => algorithm,
         };
         let mut matching = SpectrumMatching::new(wanted.target.clone(), algorithm);
-        if let Some(file) = &self.start {
-            let mut sets = input::read(file, None, false)?.into_sets();
-            matching.start = Some(sets.swap_remove(0));
-        }
-        Ok(matching)
+        matching.start = start;
+        matching
     }
 
-    fn samples(&self, wanted: &Wanted, global: &Global) -> Outcome<Vec<Sample>> {
-        let matching = self.matching(wanted)?;
+    fn samples(
+        &self,
+        wanted: &Wanted,
+        start: Option<PointSet>,
+        global: &Global,
+    ) -> Outcome<Vec<Sample>> {
+        let matching = self.matching(wanted, start);
         let n = wanted.target.density().points_per_unit_area() as usize;
         let bar = Bar::new(global.quiet);
         let failure = |error: bn_samplers::SampleError| {
@@ -158,7 +176,8 @@ impl Match {
             "seed": self.seed,
             "sets": self.sets,
             "options": {"algorithm": self.algorithm, "iterations": self.iterations,
-                        "best_effort": self.best_effort},
+                        "best_effort": self.best_effort, "start": self.start,
+                        "nu0": self.target.nu0, "peak": self.target.peak, "sigma": self.target.sigma},
             "iterations": each("iterations").iter().sum::<f64>() as u64,
             "residual": largest("residual"),
             "empty_power": largest("empty_power"),

@@ -6,7 +6,6 @@ use bn_spectral::{Realizability, highest_step};
 use clap::{Args, Command};
 use serde_json::json;
 
-use super::Global;
 use super::target::TargetArgs;
 use crate::{Outcome, output};
 
@@ -31,7 +30,8 @@ pub(super) fn command() -> Command {
         .long_about(
             "Tell whether a spectrum is realizable: the least value of the power P and of the RDF g, \
              which must not be negative, and where they are; further conditions that are known to be \
-             necessary come as warnings. Sufficient conditions are not known.",
+             necessary come as warnings. Sufficient conditions are not known. The exit code is 0 \
+             whatever the answer.",
         )
         .after_help(
             "Examples:\n  bn realize --target step -n 4096 --nu0 36\n  \
@@ -39,7 +39,7 @@ pub(super) fn command() -> Command {
         )
 }
 
-pub(super) fn run(args: &Realize, global: &Global) -> Outcome {
+pub(super) fn run(args: &Realize) -> Outcome {
     let wanted = args.target.target(args.n, args.file.as_deref())?;
     let verdict = Realizability::of(&wanted.target);
     let n = wanted.target.density().points_per_unit_area();
@@ -69,13 +69,15 @@ pub(super) fn run(args: &Realize, global: &Global) -> Outcome {
             "least power  {:10.6} at {:.4} cycles per unit",
             verdict.min_power, verdict.at_nu
         )?;
-        writeln!(w, "least g      {:10.6} at the distance {:.6}", verdict.min_g, verdict.at_r)?;
-        Ok(writeln!(w, "a step is realizable up to {:.4} cycles per unit", highest_step(n))?)
-    })?;
-    if !args.json {
-        for warning in &warnings {
-            global.remark(warning);
-        }
-    }
-    Ok(())
+        let noise = if verdict.realizable && verdict.min_g < 0.0 {
+            ", within the error of a measured spectrum"
+        } else {
+            ""
+        };
+        let (g, r) = (verdict.min_g, verdict.at_r);
+        writeln!(w, "least g      {g:10.6} at the distance {r:.6}{noise}")?;
+        writeln!(w, "a step is realizable up to {:.4} cycles per unit", highest_step(n))?;
+        warnings.iter().try_for_each(|warning| writeln!(w, "warning: {warning}"))?;
+        Ok(())
+    })
 }

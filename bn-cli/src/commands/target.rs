@@ -22,15 +22,15 @@ pub(super) struct TargetArgs {
     /// Frequency of the step, or where the peak begins, in cycles per unit (default: sqrt(n/pi) for
     /// step, 60 sqrt(n/4096) for single-peak)
     #[arg(long, value_name = "NU", allow_negative_numbers = true)]
-    nu0: Option<f64>,
+    pub(super) nu0: Option<f64>,
     /// Power of the peak above 1, (height - 1) times width, in cycles per unit (default: 19
     /// sqrt(n/4096))
     #[arg(long, value_name = "POWER", allow_negative_numbers = true)]
-    peak: Option<f64>,
+    pub(super) peak: Option<f64>,
     /// Deviation of the Gaussian that smooths the peak, in cycles per unit (default: 2.5
     /// sqrt(n/4096))
     #[arg(long, value_name = "SIGMA", allow_negative_numbers = true)]
-    sigma: Option<f64>,
+    pub(super) sigma: Option<f64>,
 }
 
 /// A target and where it comes from.
