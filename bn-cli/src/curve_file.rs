@@ -9,7 +9,7 @@ use anyhow::Context;
 use bn_core::{Density, NormalizedDistance, NormalizedFrequency};
 use bn_spectral::Target;
 
-use crate::{Failure, Outcome};
+use crate::{Failure, Outcome, input};
 
 /// What a header says about the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,16 +46,37 @@ impl Columns {
     }
 }
 
-/// Whether the file begins with one of the four headers.
-pub(crate) fn is_curve(path: &Path) -> bool {
+/// Whether bytes begin like a curve: with two names and a comma between them that are not the
+/// header of a point file.
+///
+/// Headers that no curve has count as well, since what can be said about them has to do with curves.
+pub(crate) fn looks_like_curve(bytes: &[u8]) -> bool {
+    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST_HEADER)]);
+    let line = start.trim_start_matches('\u{feff}').lines().next().unwrap_or_default();
+    let is_name = |word: &str| {
+        let word = word.trim();
+        word.starts_with(|c: char| c.is_ascii_alphabetic())
+            && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+            // Numbers that are none: a matter for the reader of points.
+            && word.parse::<f64>().is_err()
+    };
+    match line.split_once(',') {
+        Some((x, y)) => is_name(x) && is_name(y) && (x.trim(), y.trim()) != ("x", "y"),
+        None => false,
+    }
+}
+
+/// Bytes in which a header has to end.
+const LONGEST_HEADER: usize = 64;
+
+/// The first bytes of a file, enough for [`looks_like_curve`]; none if it can't be read.
+pub(crate) fn start_of(path: &Path) -> Vec<u8> {
     use std::io::Read;
-    let mut start = [0; 64];
-    let read = std::fs::File::open(path).and_then(|mut file| file.read(&mut start));
-    let text = String::from_utf8_lossy(&start[..read.unwrap_or(0)]);
-    text.trim_start_matches('\u{feff}')
-        .lines()
-        .next()
-        .is_some_and(|line| Columns::of(line).is_some())
+    let mut start = Vec::with_capacity(LONGEST_HEADER);
+    // Whoever reads the file in earnest will tell why it can't be read.
+    let _ = std::fs::File::open(path)
+        .and_then(|file| file.take(LONGEST_HEADER as u64).read_to_end(&mut start));
+    start
 }
 
 /// The curve of a file as a target at `density`.
@@ -65,6 +86,9 @@ pub(crate) fn is_curve(path: &Path) -> bool {
 /// or samples that don't make a target: bad input.
 pub(crate) fn read(path: &Path, density: Density) -> Outcome<Target> {
     let name = path.display();
+    if path.as_os_str() == "-" {
+        return parse_bytes(&input::stdin_bytes()?, density);
+    }
     let size = std::fs::metadata(path).map_or(0, |data| data.len());
     if size > LONGEST {
         return Err(Failure::misuse(format!("{name}: {size} bytes are too many for a curve")));
@@ -73,6 +97,12 @@ pub(crate) fn read(path: &Path, density: Density) -> Outcome<Target> {
         .with_context(|| format!("cannot read {name}"))
         .map_err(Failure::usage)?;
     parse(&text, density).map_err(|failure| failure.context(name.to_string()))
+}
+
+/// The curve in what came from standard input, as [`read`].
+pub(crate) fn parse_bytes(bytes: &[u8], density: Density) -> Outcome<Target> {
+    let text = std::str::from_utf8(bytes).map_err(Failure::usage);
+    text.and_then(|text| parse(text, density)).map_err(|failure| failure.context("standard input"))
 }
 
 fn parse(text: &str, density: Density) -> Outcome<Target> {
@@ -116,6 +146,18 @@ mod tests {
         let d_hex = density().hexagonal_spacing();
         let absolute = parse(&format!("r,g\n0,0\n{d_hex},1\n"), density()).expect("a curve");
         assert_eq!(absolute, parse("r_rel,g\n0,0\n1,1\n", density()).expect("a curve"));
+    }
+
+    #[test]
+    fn curves_are_told_from_points() {
+        for curve in ["nu,power\n0,1\n", "r_rel, g\r\n", "\u{feff}nu,power\n", "k,P\n"] {
+            assert!(looks_like_curve(curve.as_bytes()), "{curve}");
+        }
+        for points in ["", "x,y\n0.1,0.2\n", " x , y\n", "0.1,0.2\n", "nan,inf\n", "12\n0.5,0.5\n"]
+        {
+            assert!(!looks_like_curve(points.as_bytes()), "{points}");
+        }
+        assert!(!looks_like_curve(&[0xff; 9]));
     }
 
     #[test]

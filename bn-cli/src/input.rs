@@ -24,14 +24,28 @@ pub fn read(path: &Path, format: Option<Format>, wrap: bool) -> Outcome<Ensemble
 }
 
 fn read_stdin(format: Option<Format>, options: ReadOptions) -> Outcome<Ensemble> {
+    parse_stdin(&stdin_bytes()?, format, options)
+}
+
+/// All of standard input, to be looked at before it is read as something.
+pub(crate) fn stdin_bytes() -> Outcome<Vec<u8>> {
     let mut bytes = Vec::new();
     std::io::stdin()
         .lock()
         .read_to_end(&mut bytes)
         .context("cannot read standard input")
         .map_err(Failure::failed)?;
-    let format = format.unwrap_or_else(|| recognize(&bytes));
-    io::read(format, "standard input", &bytes[..], options).map_err(failure)
+    Ok(bytes)
+}
+
+/// The sets in what came from standard input.
+pub(crate) fn parse_stdin(
+    bytes: &[u8],
+    format: Option<Format>,
+    options: ReadOptions,
+) -> Outcome<Ensemble> {
+    let format = format.unwrap_or_else(|| recognize(bytes));
+    io::read(format, "standard input", bytes, options).map_err(failure)
 }
 
 /// The format that bytes without a name are most likely in: by the mark of `.npy`, `.json` or `.eps`,

@@ -45,6 +45,7 @@ mod window;
 
 pub use autocorrelation::Autocorrelation;
 pub use bessel::{j0, j0_slice, j1, j1_slice, jinc, jinc_slice};
+pub use bn_fft::Complex;
 pub use hankel::{BesselSums, BesselSumsScratch, HankelPlan};
 pub use measures::{
     PowerToRdf, QUIET_POWER, RdfToPower, RingMeans, SpectrumError, WindowedSpectrum,
@@ -59,7 +60,6 @@ pub use power_image::PowerImage;
 pub use radial::{RadialPower, power_below};
 pub use rdf::PairHistogram;
 pub use realizability::{Realizability, Warning, feasible_region};
-pub use rustfft::num_complex::Complex;
 pub use spectra::{
     JitteredGrid, LatticeRing, hexagonal_lattice_rings, highest_step, square_lattice_rings,
     step_rdf,

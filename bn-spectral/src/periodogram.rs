@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use bn_core::PointSet;
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
 
 use crate::{Nufft, NufftError, NufftOptions};
 

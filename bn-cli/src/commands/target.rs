@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use bn_core::io::ReadOptions;
 use bn_core::{Density, PointSet};
 use bn_spectral::{Realizability, SinglePeak, Target, highest_step};
 use clap::Args;
@@ -11,7 +12,7 @@ use crate::{Failure, Outcome, curve_file, input};
 /// Which spectrum.
 #[derive(Debug, Args)]
 pub(super) struct TargetArgs {
-    /// `step`, `single-peak`, or a CSV file with the header `nu,power` (cycles per unit),
+    /// `step`, `single-peak`, or a CSV file (`-`: standard input) with the header `nu,power` (cycles per unit),
     /// `nu_rel,power` (sqrt(n)/2), `r,g` (unit lengths) or `r_rel,g` (`d_hex`), as `bn analyze --curve`
     /// writes it
     #[arg(long, value_name = "TARGET", conflicts_with = "like")]
@@ -65,11 +66,23 @@ impl TargetArgs {
         let target = match (&*name, target) {
             ("step", _) => self.step(density)?,
             ("single-peak", _) => self.single_peak(density)?,
-            (_, Some(path)) if file.is_none() || curve_file::is_curve(path) => {
+            (_, Some(path)) if file.is_none() => curve_file::read(path, density)?,
+            ("-", _) => {
+                let bytes = input::stdin_bytes()?;
+                if !curve_file::looks_like_curve(&bytes) {
+                    let sets = input::parse_stdin(&bytes, None, ReadOptions::default())?;
+                    return imitated(sets.sets(), name, n);
+                }
+                curve_file::parse_bytes(&bytes, density)?
+            }
+            (_, Some(path)) if curve_file::looks_like_curve(&curve_file::start_of(path)) => {
                 curve_file::read(path, density)?
             }
-            (_, Some(path)) => return imitated(&[path.to_owned()], n),
-            (_, None) if !self.like.is_empty() => return imitated(&self.like, n),
+            (_, Some(path)) => return imitated(&all_sets(&[path.to_owned()])?, name, n),
+            (_, None) if !self.like.is_empty() => {
+                let names: Vec<_> = self.like.iter().map(|f| f.display().to_string()).collect();
+                return imitated(&all_sets(&self.like)?, names.join(" "), n);
+            }
             (_, None) => {
                 return Err(Failure::misuse(
                     "which spectrum? --target step, --target single-peak, --target FILE or --like FILE",
@@ -96,16 +109,20 @@ impl TargetArgs {
     }
 }
 
-/// The mean spectrum of all sets of these files.
-fn imitated(files: &[PathBuf], n: Option<u32>) -> Outcome<Wanted> {
-    let mut sets: Vec<PointSet> = Vec::new();
+/// The sets of all files.
+fn all_sets(files: &[PathBuf]) -> Outcome<Vec<PointSet>> {
+    let mut sets = Vec::new();
     for file in files {
         sets.extend(input::read(file, None, false)?.into_sets());
     }
+    Ok(sets)
+}
+
+/// The mean spectrum of these sets.
+fn imitated(sets: &[PointSet], name: String, n: Option<u32>) -> Outcome<Wanted> {
     let points = n.map_or(sets[0].len(), |n| n as usize);
-    let target = Target::imitating(&sets, points).map_err(Failure::usage)?;
-    let names: Vec<_> = files.iter().map(|file| file.display().to_string()).collect();
-    Ok(Wanted { target, name: names.join(" "), is_default: false })
+    let target = Target::imitating(sets, points).map_err(Failure::usage)?;
+    Ok(Wanted { target, name, is_default: false })
 }
 
 /// Fewer modes than this can't have a spectrum of their own.

@@ -69,6 +69,32 @@ fn every_algorithm_can_be_asked_for() {
     folder.bn("match --target step --algorithm nosuch").refused(2, &["spectral", "annealing"]);
 }
 
+#[test]
+fn curves_come_by_pipe_too() {
+    let folder = Folder::new();
+    folder.bn("generate jittered -n 400 -o points.txt").done();
+    let piped = folder.bn("analyze points.txt --curve radial-power -o -").done().stdout;
+    folder.file("power.csv", &piped);
+    let verdict = |words: &str, stdin: &[u8]| {
+        let mut verdict = folder.bn_with(words, stdin, &[]).done().json();
+        verdict.as_object_mut().expect("an object").remove("target");
+        verdict
+    };
+    let from_file = verdict("realize power.csv -n 400 --json", b"");
+    assert_eq!(verdict("realize - -n 400 --json", &piped), from_file);
+    assert_eq!(verdict("realize --target - -n 400 --json", &piped), from_file);
+    // Points on standard input are judged by their spectrum.
+    let points = verdict("realize points.txt --json", b"");
+    assert_eq!(verdict("realize - --json", &folder.read("points.txt")), points);
+    let words = "match --target - -n 100 --iterations 2 --best-effort";
+    assert_eq!(folder.bn_with(words, &piped, &[]).done().text().lines().count(), 101);
+    // What has a header that no curve has is no list of points either.
+    folder.file("k.csv", "k,P\n0,1\n1,1\n");
+    folder.bn("realize k.csv").refused(2, &["k.csv", "nu_rel,power", "\"k,P\""]);
+    folder.bn_with("realize -", b"k,P\n0,1\n", &[]).refused(2, &["standard input", "r,g"]);
+    folder.bn_with("match --target -", b"", &[]).refused(2, &["standard input"]);
+}
+
 /// Named targets with default parameters are made however near they can be; what a user asks for
 /// is refused if it can't be had.
 #[test]

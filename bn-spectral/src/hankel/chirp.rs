@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use rustfft::num_complex::Complex;
-use rustfft::num_traits::Zero;
-use rustfft::{Fft, FftPlanner};
+use bn_fft::Complex;
+use bn_fft::num_traits::Zero;
+use bn_fft::{Fft, Planner};
 
 type C64 = Complex<f64>;
 
@@ -43,7 +43,7 @@ impl ChirpPlan {
         chirps: &[C64],
         (first_input, inputs): (usize, usize),
         (first_output, outputs): (usize, usize),
-        planner: &mut FftPlanner<f64>,
+        planner: &mut Planner<f64>,
     ) -> Self {
         let length = fast_length(inputs + outputs - 1);
         let mut filter = vec![C64::zero(); length];
@@ -53,8 +53,8 @@ impl ChirpPlan {
         for (d, value) in filter.iter_mut().enumerate().take(inputs + outputs - 1) {
             *value = chirps[(first_output + d).abs_diff(last_input)].conj() / length as f64;
         }
-        let forward = planner.plan_fft_forward(length);
-        let inverse = planner.plan_fft_inverse(length);
+        let forward = planner.forward(length);
+        let inverse = planner.inverse(length);
         forward.process(&mut filter);
         let inputs = chirps[first_input..first_input + inputs].to_vec();
         let outputs = chirps[first_output..first_output + outputs].to_vec();
@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn sums_are_those_of_the_definition() {
         let (alpha, inputs, outputs) = (0.017_3, (3, 50), (41, 30));
-        let plan = ChirpPlan::new(&chirps(alpha, 71), inputs, outputs, &mut FftPlanner::new());
+        let plan = ChirpPlan::new(&chirps(alpha, 71), inputs, outputs, &mut Planner::<f64>::new());
         let g: Vec<f64> = (0..50).map(|i| f64::from(i * 37 % 11) - 5.0).collect();
         let mut buffer = vec![C64::zero(); plan.length()];
         let mut scratch = vec![C64::zero(); plan.scratch_length()];

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
-use rustfft::num_traits::Zero;
+use bn_fft::Complex;
+use bn_fft::Planner;
+use bn_fft::num_traits::Zero;
 
 use super::chirp::{ChirpPlan, chirps};
 use crate::j0_slice;
@@ -83,7 +83,7 @@ impl BesselSums {
         // Up to here every i·j is below GROWTH·product.
         let direct = (GROWTH * product / radii).clamp(1, frequencies);
         let needed = if direct < frequencies { radii.max(frequencies) } else { 0 };
-        let (chirps, mut planner) = (chirps(alpha, needed), FftPlanner::new());
+        let (chirps, mut planner) = (chirps(alpha, needed), Planner::<f64>::new());
         let mut blocks = vec![Block {
             outputs: 0..direct,
             first_radius: radii,

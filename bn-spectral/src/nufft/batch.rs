@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
 
 use super::real::Real;
 use super::simd::Job;

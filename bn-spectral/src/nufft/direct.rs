@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use bn_core::DVec2;
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
 
 use super::modes::{FullPlane, HalfPlane};
 use super::simd::{Job, Simd, multiply_add};

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use rustfft::Fft;
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
+use bn_fft::Fft;
 
 use super::batch::{BatchFft, BatchTransform, LANES, Lanes};
 use super::real::Real;

@@ -50,7 +50,7 @@ mod portable;
 use std::ops::Range;
 
 use bn_core::DVec2;
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
 
 pub use direct::{direct_complex_modes, direct_complex_sums, direct_modes, direct_sums};
 pub use mode_columns::ModeColumns;

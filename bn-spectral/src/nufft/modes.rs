@@ -1,6 +1,6 @@
 //! Where the coefficients of a transform are kept.
 
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
 
 use super::real::Real;
 

@@ -1,8 +1,8 @@
 //! Portable plans: the same bits with the instructions at hand as with those that every CPU has.
 
 use bn_core::{DVec2, Seed};
+use bn_fft::Complex;
 use rand::RngExt as _;
-use rustfft::num_complex::Complex;
 
 use super::ffts::Ffts;
 use super::simd::Simd;

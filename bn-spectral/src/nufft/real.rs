@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use rustfft::num_traits::NumAssign;
-use rustfft::{Fft, FftNum, FftPlanner};
+use bn_fft::num_traits::NumAssign;
+use bn_fft::{Fft, FftNum, Planner};
 
 use super::batch::BatchTransform;
 use super::simd::Simd;
@@ -32,7 +32,7 @@ pub(super) mod sealed {
     };
 
     /// What is compiled once for each type, here: a generic function would be compiled anew by
-    /// every crate that uses a transform, and the FFTs take a minute.
+    /// every crate that uses a transform.
     pub trait Sealed: Sized {
         fn spread(job: Spread<'_, '_, Self>);
         fn gather(job: Gather<'_, '_, Self>);
@@ -78,8 +78,8 @@ macro_rules! implement {
             }
 
             fn plan_ffts(size: usize) -> [Arc<dyn Fft<Self>>; 2] {
-                let mut planner = FftPlanner::new();
-                [planner.plan_fft_forward(size), planner.plan_fft_inverse(size)]
+                let mut planner = Planner::<$real>::new();
+                [planner.forward(size), planner.inverse(size)]
             }
         }
 

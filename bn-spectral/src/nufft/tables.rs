@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use bn_fft::Complex;
 use rayon::prelude::*;
-use rustfft::num_complex::Complex;
 
 use super::batch::LANES;
 use super::design::Design;

@@ -1,6 +1,6 @@
 //! The innermost loops: a kernel's taps added to the grid, or summed from it.
 
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
 
 use super::kernel::MAX_WIDTH;
 use super::located::Located;

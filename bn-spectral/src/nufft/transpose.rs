@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
 
 use super::real::Real;
 use super::simd::Job;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
 
 use super::batch::LANES;
 use super::ffts::Direction;

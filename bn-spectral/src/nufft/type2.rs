@@ -1,6 +1,6 @@
 //! Type 2, modes → points: the steps of type 1 in reverse, each transposed.
 
-use rustfft::num_complex::Complex;
+use bn_fft::Complex;
 
 use super::batch::LANES;
 use super::ffts::Direction;

@@ -50,7 +50,7 @@ impl Metadata {
 }
 
 pub(super) fn run() -> Outcome {
-    build(&["--examples"])?;
+    build()?;
     let metadata = Metadata::load()?;
     let folder = metadata.programs().join("examples");
     for name in metadata.examples() {

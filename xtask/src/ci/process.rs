@@ -15,10 +15,22 @@ pub(super) fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Outcome
     succeed(command.status(), || format!("cargo {}", arguments.join(" ")))
 }
 
-/// Builds what `targets` says as the tests are built, so that nothing is compiled for both.
-pub(super) fn build(targets: &[&str]) -> Outcome {
-    let how = ["build", "--quiet", "--profile", "test", "--workspace", "--all-features"];
-    cargo(&[&how[..], targets].concat(), &[])
+/// Builds all programs and examples as the tests are built, so that nothing is compiled for both:
+/// examples have the tests' dependencies, which decide about the features of all others.
+pub(super) fn build() -> Outcome {
+    cargo(
+        &[
+            "build",
+            "--quiet",
+            "--profile",
+            "test",
+            "--workspace",
+            "--all-features",
+            "--bins",
+            "--examples",
+        ],
+        &[],
+    )
 }
 
 /// What cargo prints on standard output.

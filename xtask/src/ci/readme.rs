@@ -18,7 +18,7 @@ const LIMIT: Duration = Duration::from_secs(120);
 /// Runs every line that starts with `bn ` in a code block of the README and of `docs/*.md`, one
 /// file's in order and in one empty folder, so that later ones find what earlier ones wrote.
 pub(super) fn run() -> Outcome {
-    build(&["--bins"])?;
+    build()?;
     let programs = Metadata::load()?.programs();
     let mut found = 0;
     for document in documents()? {
