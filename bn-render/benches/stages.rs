@@ -1,29 +1,23 @@
 //! Samples per second of the renderer: against nested loops, by kernel, by scene, and what skipping
 //! saves.
 
+mod common;
+#[path = "../tests/common/silent.rs"]
+mod silent;
+
 use std::hint::black_box;
 
-use bn_core::{DVec2, PointSet, Seed};
+use bn_core::{DVec2, PointSet};
 use bn_render::{
-    Channels, Checkerboard, Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern, Rect,
-    Renderer, SCENES, Scene, SceneOptions, Window, ZonePlate, kernel, scene,
+    Checkerboard, Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern, Renderer, SCENES,
+    Scene, SceneOptions, Window, ZonePlate, kernel, scene,
 };
+use common::{frame, jittered};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use rand::RngExt;
-
-fn jittered(m: u32) -> PointSet {
-    let mut rng = Seed::new(1).stream(0);
-    let mut jitter = |i: u32| (f64::from(i) + rng.random::<f64>()) / f64::from(m);
-    let points = (0..m * m).map(|i| DVec2::new(jitter(i % m), jitter(i / m)));
-    PointSet::wrapped(points.collect()).expect("valid points")
-}
+use silent::Silent;
 
 fn pattern(spp: f64) -> Pattern {
     Pattern::tiled(&jittered(64), spp).expect("a pattern")
-}
-
-fn frame(width: u32, height: u32) -> Frame {
-    Frame::new(width, height).expect("a size")
 }
 
 fn table(name: &str) -> KernelTable {
@@ -98,6 +92,11 @@ fn against_nested_loops(c: &mut Criterion) {
     group.bench_function("renderer", |b| {
         b.iter(|| rendered(&plate, black_box(&pattern), &table, &frame));
     });
+    group.bench_function("renderer-weighted", |b| {
+        let weights: Vec<f64> = (0..set.len()).map(|i| 1.0 + (i % 3) as f64).collect();
+        let weighted = Pattern::weighted(&set, &weights, 16.0).expect("weights");
+        b.iter(|| rendered(&plate, black_box(&weighted), &table, &frame));
+    });
     group.finish();
 }
 
@@ -130,21 +129,6 @@ fn scenes(c: &mut Criterion) {
         });
     }
     group.finish();
-}
-
-/// A scene that keeps what it knows to itself.
-struct Silent<'a>(&'a dyn Scene);
-
-impl Scene for Silent<'_> {
-    fn channels(&self) -> Channels {
-        self.0.channels()
-    }
-    fn values(&self, u: &[f64], v: &[f64], out: &mut [f64]) {
-        self.0.values(u, v, out);
-    }
-    fn constant_over(&self, _: &Rect) -> Option<bn_render::Color> {
-        None
-    }
 }
 
 /// A board under a sky that takes half of the image, and a small window of a large image.

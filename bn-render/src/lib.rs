@@ -4,7 +4,8 @@
 //! [`KernelTable`] says how much each sample gives to the pixels around it, and a [`Renderer`]
 //! makes the pixels, by normalised or plain convolution ([`Normalization`]). Scenes come by name
 //! ([`scene`], [`SCENES`]) or from an image ([`Picture`]), kernels by name ([`kernel`],
-//! [`KERNELS`]). [`Image`] holds linear light, reads and writes PNG, PFM and (feature `exr`)
+//! [`KERNELS`]). A [`BandLimitedRenderer`] makes them by iteration instead: it fits a trigonometric
+//! polynomial to the samples ([`BandLimitedFit`]). [`Image`] holds linear light, reads and writes PNG, PFM and (feature `exr`)
 //! `OpenEXR`; [`mean_square_error`] and [`peak_signal_to_noise`] compare. [`Supersampling`] holds the
 //! fixed patterns of real-time graphics and their transfer functions; [`exact_convolution`] is what
 //! samples without end would give.
@@ -31,6 +32,7 @@
 //!
 //! Invariant: makes no pattern, prints nothing, knows no number of the thesis.
 
+mod band_limited;
 mod image;
 mod kernel;
 mod metrics;
@@ -42,6 +44,11 @@ mod scene;
 mod simd;
 mod supersampling;
 
+pub use band_limited::{
+    BandLimitedError, BandLimitedFit, BandLimitedMethod, BandLimitedOptions, BandLimitedRenderer,
+    BandLimitedStats, Border, Convergence, Degree, LowPass, Stop, Stopping,
+    TrigonometricPolynomial,
+};
 pub use image::{
     BitDepth, Channels, Encoding, Image, ImageError, PfmWriter, PngEncoding, PngOptions, PngWriter,
     linear_from_srgb, read_pfm, read_png, srgb_from_linear, write_pfm, write_png,

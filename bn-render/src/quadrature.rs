@@ -74,7 +74,7 @@ fn rule(kernel: &dyn Kernel, cells: usize, nodes: usize) -> Supersampling {
 
 /// Nodes and weights of the Gauss–Legendre rule on [0, 1], by Newton's method from the usual
 /// cosines.
-fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+pub(crate) fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     let count = n as f64;
     let root = |i: usize| {
         let mut x = libm::cos(std::f64::consts::PI * (i as f64 + 0.75) / (count + 0.5));

@@ -7,7 +7,7 @@ use bn_render::{
     Channels, Checkerboard, Color, Constant, Frame, KERNELS, KernelTable, Normalization, Pattern,
     Rect, Renderer, Scene, SphereScene, TileVariation, Window, ZonePlate, kernel,
 };
-use common::{jittered_set, nested_loops, random_set};
+use common::{Silent, jittered_set, nested_loops, random_set};
 use proptest::prelude::*;
 
 /// Three channels of different scenes.
@@ -23,18 +23,6 @@ impl Scene for Three {
         self.0.values(u, v, a);
         self.1.values(u, v, b);
         self.2.values(u, v, c);
-    }
-}
-
-/// A scene that keeps what it knows to itself.
-struct Silent<'a>(&'a dyn Scene);
-
-impl Scene for Silent<'_> {
-    fn channels(&self) -> Channels {
-        self.0.channels()
-    }
-    fn values(&self, u: &[f64], v: &[f64], out: &mut [f64]) {
-        self.0.values(u, v, out);
     }
 }
 

@@ -12,13 +12,16 @@ pub(super) struct Buckets {
     starts: Vec<u32>,
     xs: Vec<f64>,
     ys: Vec<f64>,
+    /// Nothing if all points weigh the same.
+    weights: Vec<f64>,
 }
 
 impl Buckets {
     /// About four points a bucket: small enough to read little too much, large enough for runs.
     const POINTS_PER_BUCKET: usize = 4;
 
-    pub(super) fn new(set: &PointSet) -> Self {
+    /// `weights` are one a point, or none.
+    pub(super) fn new(set: &PointSet, weights: &[f64]) -> Self {
         let side = (set.len() / Self::POINTS_PER_BUCKET).isqrt().max(1);
         let column = |x: f64| ((x * side as f64) as usize).min(side - 1);
         let keys: Vec<u32> =
@@ -32,14 +35,18 @@ impl Buckets {
         }
         let mut next = starts.clone();
         let (mut xs, mut ys) = (vec![0.0; set.len()], vec![0.0; set.len()]);
-        for (p, &key) in set.points().iter().zip(&keys) {
+        let mut sorted = vec![0.0; weights.len()];
+        for (i, (p, &key)) in set.points().iter().zip(&keys).enumerate() {
             let slot = &mut next[key as usize];
             // −0 counts as 0 on the torus.
             xs[*slot as usize] = p.x + 0.0;
             ys[*slot as usize] = p.y + 0.0;
+            if let Some(&weight) = weights.get(i) {
+                sorted[*slot as usize] = weight;
+            }
             *slot += 1;
         }
-        Self { side, starts, xs, ys }
+        Self { side, starts, xs, ys, weights: sorted }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -52,6 +59,11 @@ impl Buckets {
 
     pub(super) fn ys(&self) -> &[f64] {
         &self.ys
+    }
+
+    /// One a point, or nothing.
+    pub(super) fn weights(&self) -> &[f64] {
+        &self.weights
     }
 
     /// The runs of points that hold all whose coordinates lie in the given intervals (which may
@@ -89,7 +101,7 @@ mod tests {
         for n in [1, 3, 4, 17, 1000] {
             let points = (0..n).map(|_| DVec2::new(rng.random(), rng.random())).collect();
             let set = PointSet::new(points).expect("a set");
-            let buckets = Buckets::new(&set);
+            let buckets = Buckets::new(&set, &[]);
             for _ in 0..50 {
                 let mut interval = || {
                     let a: f64 = rng.random_range(-0.3..1.3);

@@ -1,6 +1,7 @@
 //! Point sets laid over the image plane.
 
 mod buckets;
+mod samples;
 mod variation;
 
 use bn_core::{DVec2, PointSet};
@@ -8,6 +9,7 @@ use thiserror::Error;
 
 use crate::Rect;
 use buckets::{Buckets, Interval};
+pub use samples::SampleList;
 use variation::Change;
 pub use variation::TileVariation;
 
@@ -20,6 +22,28 @@ pub enum PatternError {
     SamplesPerPixel {
         /// The number asked for.
         samples_per_pixel: f64,
+    },
+    /// Not one weight a point.
+    #[error("{weights} weights for {points} points")]
+    WeightCount {
+        /// Weights given.
+        weights: usize,
+        /// Points of the set.
+        points: usize,
+    },
+    /// A weight that is negative or not a finite number.
+    #[error("weight {weight} of point {index} is no weight; they are finite and not negative")]
+    Weight {
+        /// The point's index.
+        index: usize,
+        /// Its weight.
+        weight: f64,
+    },
+    /// All weights are 0, or their sum is beyond all numbers.
+    #[error("the weights' sum is {sum}; it must be a positive number")]
+    WeightSum {
+        /// The sum.
+        sum: f64,
     },
 }
 
@@ -43,13 +67,53 @@ impl Pattern {
     /// # Errors
     /// If `samples_per_pixel` is not a number from 2⁻¹⁶ to 2¹⁶.
     pub fn tiled(set: &PointSet, samples_per_pixel: f64) -> Result<Self, PatternError> {
+        Self::with_weights(set, &[], samples_per_pixel)
+    }
+
+    /// The set tiled at `samples_per_pixel`, its points weighing as `weights` say, in the order of
+    /// the set and in any unit: they are divided by their mean.
+    ///
+    /// A sample then counts as that many: its kernel and the density that it stands for are
+    /// multiplied by its weight. With the areas of the points' Voronoi cells (on the torus: those of
+    /// the tiled set, as long as tiles are alike) sums over samples become integrals over the cells,
+    /// and gaps and clusters no longer show as changes of brightness.
+    ///
+    /// # Errors
+    /// If `samples_per_pixel` is not a number from 2⁻¹⁶ to 2¹⁶, there isn't one weight a point, one
+    /// is negative or not finite, or their sum is not positive and finite.
+    pub fn weighted(
+        set: &PointSet,
+        weights: &[f64],
+        samples_per_pixel: f64,
+    ) -> Result<Self, PatternError> {
+        if weights.len() != set.len() {
+            return Err(PatternError::WeightCount { weights: weights.len(), points: set.len() });
+        }
+        let bad = weights.iter().position(|weight| !(weight.is_finite() && *weight >= 0.0));
+        if let Some(index) = bad {
+            return Err(PatternError::Weight { index, weight: weights[index] });
+        }
+        let sum: f64 = weights.iter().sum();
+        if !(sum > 0.0 && sum.is_finite()) {
+            return Err(PatternError::WeightSum { sum });
+        }
+        let mean = sum / set.len() as f64;
+        let relative: Vec<f64> = weights.iter().map(|weight| weight / mean).collect();
+        Self::with_weights(set, &relative, samples_per_pixel)
+    }
+
+    fn with_weights(
+        set: &PointSet,
+        weights: &[f64],
+        samples_per_pixel: f64,
+    ) -> Result<Self, PatternError> {
         let limit = f64::from(1 << 16);
         if !(1.0 / limit..=limit).contains(&samples_per_pixel) {
             return Err(PatternError::SamplesPerPixel { samples_per_pixel });
         }
         let side = (set.len() as f64 / samples_per_pixel).sqrt();
         let variation = TileVariation::Repeated;
-        Ok(Self { buckets: Buckets::new(set), samples_per_pixel, side, variation })
+        Ok(Self { buckets: Buckets::new(set, weights), samples_per_pixel, side, variation })
     }
 
     /// The same with tiles that differ.
@@ -66,6 +130,11 @@ impl Pattern {
     /// The tile's side L in pixels.
     pub fn side(&self) -> f64 {
         self.side
+    }
+
+    /// Whether points weigh differently.
+    pub fn is_weighted(&self) -> bool {
+        !self.buckets.weights().is_empty()
     }
 
     /// Points in a tile.
@@ -120,11 +189,13 @@ impl Pattern {
 
     fn append(&self, rect: &Rect, tile: &Tile, list: &mut SampleList) {
         let (xs, ys) = (self.buckets.xs(), self.buckets.ys());
+        let weights = self.buckets.weights();
         let corner = DVec2::new(tile.a as f64, tile.b as f64);
         let Some(change) = self.variation.of_tile(tile.a, tile.b) else {
             for run in self.buckets.runs(tile.x, tile.y) {
-                let points = xs[run.clone()].iter().zip(&ys[run]);
-                list.append(rect, points.map(|(&x, &y)| (corner + DVec2::new(x, y)) * self.side));
+                let points = xs[run.clone()].iter().zip(&ys[run.clone()]);
+                let places = points.map(|(&x, &y)| (corner + DVec2::new(x, y)) * self.side);
+                list.append(rect, places, weights.get(run));
             }
             return;
         };
@@ -140,7 +211,8 @@ impl Pattern {
         for run in runs {
             let fresh = run.start.max(read_to)..run.end;
             read_to = read_to.max(run.end);
-            list.append(rect, fresh.map(|i| place(DVec2::new(xs[i], ys[i]))));
+            let places = fresh.clone().map(|i| place(DVec2::new(xs[i], ys[i])));
+            list.append(rect, places, weights.get(fresh));
         }
     }
 }
@@ -173,57 +245,5 @@ impl Tile {
             low < -3.0 * slack && high > 1.0 + 3.0 * slack
         };
         whole(self.x, self.a) && whole(self.y, self.b)
-    }
-}
-
-/// Places of samples, one array for each coordinate so that loops over them can be vectorised.
-#[derive(Clone, Debug, Default)]
-pub struct SampleList {
-    u: Vec<f64>,
-    v: Vec<f64>,
-}
-
-impl SampleList {
-    /// Abscissae in pixels.
-    pub fn u(&self) -> &[f64] {
-        &self.u
-    }
-
-    /// Ordinates in pixels, downwards.
-    pub fn v(&self) -> &[f64] {
-        &self.v
-    }
-
-    /// Number of samples.
-    pub fn len(&self) -> usize {
-        self.u.len()
-    }
-
-    /// Whether there is no sample.
-    pub fn is_empty(&self) -> bool {
-        self.u.is_empty()
-    }
-
-    /// Forgets all samples, keeps the memory.
-    pub fn clear(&mut self) {
-        self.u.clear();
-        self.v.clear();
-    }
-
-    /// Appends those of `points` that lie in the half-open rectangle.
-    fn append(&mut self, rect: &Rect, points: impl ExactSizeIterator<Item = DVec2>) {
-        let start = self.u.len();
-        self.u.resize(start + points.len(), 0.0);
-        self.v.resize(start + points.len(), 0.0);
-        let (us, vs) = (&mut self.u[start..], &mut self.v[start..]);
-        let mut kept = 0;
-        // Written first, counted after: no branch to mispredict at the rectangle's border.
-        for p in points {
-            us[kept] = p.x;
-            vs[kept] = p.y;
-            kept += usize::from(p.cmpge(rect.min).all() & p.cmplt(rect.max).all());
-        }
-        self.u.truncate(start + kept);
-        self.v.truncate(start + kept);
     }
 }

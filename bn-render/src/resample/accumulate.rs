@@ -43,8 +43,8 @@ fn by_lanes<const C: usize>(job: &Job<'_>, planes: &mut Planes) {
 }
 
 vectorized! {
-    /// Σ w and Σ w·(I − c) of each cell, c its first sample's value, summed in the order of the
-    /// samples and then added to the cell's M × M pixels relative to their own references.
+    /// Σ w and Σ w·(I − c) of each cell, w the kernel times the sample's weight and c the first
+    /// sample's value, summed in the order of the samples and then added to the cell's M × M pixels relative to their own references.
     fn add_strip<const M: usize, const C: usize>(job: &Job<'_>, planes: &mut Planes) {
         let n = job.strip.len();
         let phase = job.table.phase();
@@ -67,6 +67,9 @@ vectorized! {
                     for i in 0..count {
                         batch.wx[i] = job.table.weights::<M>(u[i] - phase - left);
                         batch.wy[i] = job.table.weights::<M>(v[i] - phase - top);
+                    }
+                    if let Some(weights) = job.strip.weights.get(start..start + count) {
+                        batch.weigh(weights);
                     }
                     for c in 0..C {
                         let values = &job.values[c * n + start..][..count];
@@ -96,6 +99,16 @@ struct Batch<const M: usize, const C: usize> {
 impl<const M: usize, const C: usize> Batch<M, C> {
     fn new() -> Self {
         Self { wx: [[0.0; M]; BATCH], wy: [[0.0; M]; BATCH], value: [[0.0; BATCH]; C] }
+    }
+
+    /// Multiplies the kernel by the samples' own weights.
+    #[inline(always)]
+    fn weigh(&mut self, weights: &[f64]) {
+        for (wy, weight) in self.wy.iter_mut().zip(weights) {
+            for w in wy {
+                *w *= weight;
+            }
+        }
     }
 }
 

@@ -18,6 +18,8 @@ pub(super) struct Strip {
     /// The strip's samples, cell by cell, row by row.
     pub(super) u: Vec<f64>,
     pub(super) v: Vec<f64>,
+    /// Nothing if all samples weigh the same.
+    pub(super) weights: Vec<f64>,
     /// Where the samples of each cell begin, and the end of the last.
     pub(super) starts: Vec<u32>,
 }
@@ -67,6 +69,23 @@ impl Strip {
             let slot = &mut self.cursor[usize::from(key)];
             self.u[*slot as usize] = u;
             self.v[*slot as usize] = v;
+            *slot += 1;
+        }
+        self.collect_weights();
+    }
+
+    /// The weights, if there are any, in the order of the samples.
+    fn collect_weights(&mut self) {
+        let weights = self.found.weights();
+        self.weights.resize(weights.len(), 0.0);
+        if weights.is_empty() {
+            return;
+        }
+        self.cursor.clear();
+        self.cursor.extend_from_slice(&self.starts);
+        for (&key, &weight) in self.keys.iter().zip(weights) {
+            let slot = &mut self.cursor[usize::from(key)];
+            self.weights[*slot as usize] = weight;
             *slot += 1;
         }
     }

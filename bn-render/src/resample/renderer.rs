@@ -17,10 +17,11 @@ use crate::{Channels, Frame, Image, ImageError, KernelTable, Pattern, Scene};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Normalization {
-    /// Normalised convolution, thesis eq. 2.15: Σ r·I / Σ r. Constants come out exactly.
+    /// Normalised convolution, thesis eq. 2.15: Σ a·r·I / Σ a·r with the samples' weights a (1 unless
+    /// the pattern is weighted). Constants come out exactly.
     #[default]
     Density,
-    /// Plain convolution, eq. 2.13 with unit gain: Σ r·I / (s·(∫r)²), s samples per pixel.
+    /// Plain convolution, eq. 2.13 with unit gain: Σ a·r·I / (s·(∫r)²), s samples per pixel.
     None,
 }
 

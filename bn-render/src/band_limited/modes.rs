@@ -1,0 +1,132 @@
+//! Coefficients of real trigonometric polynomials, and the arithmetic that iterations need.
+
+use bn_spectral::Complex;
+use rayon::prelude::*;
+
+/// The degree of a trigonometric polynomial: frequencies |kx| ≤ `x`, |ky| ≤ `y`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Degree {
+    /// The largest frequency along x, in cycles per period.
+    pub x: usize,
+    /// The largest along y.
+    pub y: usize,
+}
+
+impl Degree {
+    /// Number of real coefficients, (2x + 1)(2y + 1).
+    pub fn coefficients(self) -> usize {
+        (2 * self.x + 1).saturating_mul(2 * self.y + 1)
+    }
+
+    pub(super) fn doubled(self) -> Self {
+        Self { x: 2 * self.x, y: 2 * self.y }
+    }
+
+    pub(super) fn most(self) -> usize {
+        self.x.max(self.y)
+    }
+}
+
+/// Coefficients a(k), a(−k) = a(k)*: those of kx = 0 … x, column by column, each from ky = −y to y.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Modes {
+    degree: Degree,
+    values: Vec<Complex<f64>>,
+}
+
+impl Modes {
+    pub(super) fn zeros(degree: Degree) -> Self {
+        let count = (degree.x + 1) * (2 * degree.y + 1);
+        Self { degree, values: vec![Complex::new(0.0, 0.0); count] }
+    }
+
+    pub(super) fn degree(&self) -> Degree {
+        self.degree
+    }
+
+    fn side(&self) -> usize {
+        2 * self.degree.y + 1
+    }
+
+    /// The coefficients of column kx, from ky = −y to y.
+    pub(super) fn column(&self, kx: usize) -> &[Complex<f64>] {
+        &self.values[kx * self.side()..][..self.side()]
+    }
+
+    pub(super) fn columns_mut(&mut self) -> std::slice::ChunksExactMut<'_, Complex<f64>> {
+        let side = self.side();
+        self.values.chunks_exact_mut(side)
+    }
+
+    pub(super) fn par_columns_mut(&mut self) -> rayon::slice::ChunksExactMut<'_, Complex<f64>> {
+        let side = self.side();
+        self.values.par_chunks_exact_mut(side)
+    }
+
+    /// ⟨a, b⟩ over the whole plane: Σ a(k)* b(k), which is real. Summed column by column, so that
+    /// threads don't change it.
+    pub(super) fn dot(&self, other: &Self) -> f64 {
+        let side = self.side();
+        let columns: Vec<f64> = (self.values.par_chunks_exact(side))
+            .zip(other.values.par_chunks_exact(side))
+            .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.re * b.re + a.im * b.im).sum())
+            .collect();
+        columns.iter().enumerate().map(|(kx, sum)| if kx == 0 { *sum } else { 2.0 * sum }).sum()
+    }
+
+    pub(super) fn norm_squared(&self) -> f64 {
+        self.dot(self)
+    }
+
+    /// self + factor·other, in place.
+    pub(super) fn add(&mut self, factor: f64, other: &Self) {
+        self.combine(other, |a, b| a + b * factor);
+    }
+
+    /// other + factor·self, in place.
+    pub(super) fn scale_and_add(&mut self, factor: f64, other: &Self) {
+        self.combine(other, |a, b| b + a * factor);
+    }
+
+    fn combine(
+        &mut self,
+        other: &Self,
+        f: impl Fn(Complex<f64>, Complex<f64>) -> Complex<f64> + Sync,
+    ) {
+        let side = self.side();
+        let columns = self.par_columns_mut().zip(other.values.par_chunks_exact(side));
+        columns.for_each(|(a, b)| a.iter_mut().zip(b).for_each(|(a, b)| *a = f(*a, *b)));
+    }
+
+    pub(super) fn scale(&mut self, factor: f64) {
+        self.par_columns_mut().for_each(|column| column.iter_mut().for_each(|a| *a *= factor));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_count_both_half_planes() {
+        let mut modes = Modes::zeros(Degree { x: 1, y: 1 });
+        // a(0,0) = 3, a(0,±1) = 1 ± i, a(1,0) = 2 (and so a(−1,0) = 2).
+        modes.values[0] = Complex::new(1.0, -1.0);
+        modes.values[1] = Complex::new(3.0, 0.0);
+        modes.values[2] = Complex::new(1.0, 1.0);
+        modes.values[4] = Complex::new(2.0, 0.0);
+        assert_eq!(modes.norm_squared(), 9.0 + 2.0 * 2.0 + 2.0 * 4.0);
+        assert_eq!(modes.degree().coefficients(), 9);
+        let twice = {
+            let mut m = modes.clone();
+            m.scale(2.0);
+            m
+        };
+        let mut sum = modes.clone();
+        sum.add(1.0, &modes);
+        assert_eq!(sum, twice);
+        sum.scale_and_add(-1.0, &twice);
+        assert_eq!(sum, Modes::zeros(modes.degree()));
+    }
+}
