@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use bn_core::{DVec2, PointSet, Seed};
-use bn_spectral::{PairHistogram, WindowedSpectrum};
+use bn_spectral::{Autocorrelation, PairHistogram, WindowedSpectrum};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rand::RngExt as _;
 
@@ -34,6 +34,10 @@ fn rdf(c: &mut Criterion) {
     group.throughput(Throughput::Elements(100_000));
     group.bench_function(BenchmarkId::new("within_10_spacings", 100_000), |b| {
         b.iter(|| PairHistogram::within(black_box(&set), 10.0 / 100_000_f64.sqrt(), 1000));
+    });
+    let set = [set];
+    group.bench_function(BenchmarkId::new("autocorrelation_8_spacings", 100_000), |b| {
+        b.iter(|| Autocorrelation::of(black_box(&set), 8.0 / 100_000_f64.sqrt(), 161));
     });
     let set = [random_set(4096)];
     group.throughput(Throughput::Elements(4096));

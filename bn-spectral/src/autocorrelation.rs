@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use bn_core::{CellGrid, PointSet, torus};
+use bn_core::{DVec2, PointSet, torus};
 use rayon::prelude::*;
 
-/// Points whose surroundings are looked at as one piece of work.
-const POINTS: usize = 4096;
+use crate::cell_pairs::CellPairs;
 
 /// The pair correlation g(r) of displacements r = (rx, ry) in a square window (thesis section 5.1
 /// and figure 5.1), mean over the sets: how many times as many ordered pairs have that displacement
@@ -28,8 +27,8 @@ impl Autocorrelation {
     /// g over [−`half_width`, `half_width`)² (unit lengths) in `side` × `side` cells. A cell's value
     /// that c ordered pairs make up has a relative error of about √(2/c): each comes with its reverse.
     ///
-    /// Cost O(n·(1 + n·`half_width`²)) a set of points that are spread evenly and O(n²) if they crowd
-    /// in one place; O(side²) memory a thread.
+    /// Cost O(n·(1 + n·`half_width`²)) a set of points that are spread evenly, a few ns a pair and core,
+    /// and O(n²) if they crowd in one place; O(n) memory and O(side²) a thread.
     ///
     /// # Panics
     /// If there is no set, `half_width` is not in (0, ½], or `side` is 0 or above
@@ -88,38 +87,49 @@ struct Window {
 impl Window {
     /// Number of ordered pairs by cell of their displacement.
     fn counts(&self, set: &PointSet) -> Vec<u64> {
-        let grid = CellGrid::new(set);
-        // At most 64 pieces, each of which has counts of its own.
-        let piece = POINTS.max(set.len().div_ceil(64));
-        let pieces: Vec<Vec<u64>> = (0..set.len())
-            .into_par_iter()
-            .step_by(piece)
-            .map(|first| self.count_piece(set, &grid, first..(first + piece).min(set.len())))
-            .collect();
-        let mut total = vec![0_u64; self.side * self.side];
-        for piece in &pieces {
-            for (total, &count) in total.iter_mut().zip(piece) {
-                *total += count;
-            }
-        }
-        total
+        let Some(pairs) = CellPairs::within(set, self.half_width) else {
+            let (n, points) = (set.len(), set.points());
+            return self.in_pieces(n, |i, counts| self.count(points, i, i + 1..n, counts));
+        };
+        self.in_pieces(pairs.rows(), |row, counts| {
+            pairs.for_each_in_row(row, |point, others| {
+                self.count(pairs.points(), point, others, counts);
+            });
+        })
     }
 
-    fn count_piece(&self, set: &PointSet, grid: &CellGrid, piece: Range<usize>) -> Vec<u64> {
-        let mut counts = vec![0_u64; self.side * self.side];
-        let radius = self.half_width * std::f64::consts::SQRT_2;
-        for from in piece {
-            let p = set.points()[from];
-            grid.for_each_within(p, radius, |to, _| {
-                if to as usize != from {
-                    let d = torus::delta(p, set.points()[to as usize]);
-                    if let (Some(ix), Some(iy)) = (self.cell(d.x), self.cell(d.y)) {
-                        counts[iy * self.side + ix] += 1;
-                    }
+    /// The sum of what `count` adds for each of `tasks` numbers: every thread takes every so many-th
+    /// and has counts of its own.
+    fn in_pieces(&self, tasks: usize, count: impl Fn(usize, &mut [u64]) + Sync) -> Vec<u64> {
+        let threads = rayon::current_num_threads().min(tasks);
+        let of_thread = |first: usize| {
+            let mut counts = vec![0_u64; self.side * self.side];
+            (first..tasks).step_by(threads).for_each(|task| count(task, &mut counts));
+            counts
+        };
+        let add = |mut sum: Vec<u64>, counts: Vec<u64>| {
+            sum.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+            sum
+        };
+        let counts = (0..threads).into_par_iter().map(of_thread).reduce_with(add);
+        counts.expect("an n of 2 or more makes a task")
+    }
+
+    /// Counts the pairs of a point with `others`, in both directions.
+    fn count(&self, points: &[DVec2], point: usize, others: Range<usize>, counts: &mut [u64]) {
+        let from = points[point];
+        for &to in &points[others] {
+            let d = torus::delta(from, to);
+            // What lies outside this way does so the other way, but for the ends themselves.
+            if d.x.abs() > self.half_width || d.y.abs() > self.half_width {
+                continue;
+            }
+            for d in [d, -d] {
+                if let (Some(ix), Some(iy)) = (self.cell(d.x), self.cell(d.y)) {
+                    counts[iy * self.side + ix] += 1;
                 }
-            });
+            }
         }
-        counts
     }
 
     fn cell(&self, d: f64) -> Option<usize> {

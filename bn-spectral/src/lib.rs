@@ -31,6 +31,7 @@
 
 mod autocorrelation;
 mod bessel;
+mod cell_pairs;
 mod hankel;
 mod measures;
 mod nufft;

@@ -2,11 +2,10 @@
 
 mod counter;
 
-use std::ops::Range;
-
-use bn_core::{CellGrid, Curve, PointSet};
+use bn_core::{Curve, PointSet};
 use rayon::prelude::*;
 
+use crate::cell_pairs::CellPairs;
 use counter::{Coordinates, Counter};
 
 /// Rows of the triangle of all pairs that make one piece of work.
@@ -46,8 +45,8 @@ impl PairHistogram {
 
     /// The histogram of the pairs closer than `range` ≤ ½ only.
     ///
-    /// O(n·(1 + n·range²)) time: where range is below ⅓, only points of neighbouring cells of that
-    /// size are compared.
+    /// O(n·(1 + n·range²)) time if the points are spread evenly: where range is below ⅓, only points of
+    /// neighbouring cells of that size are compared.
     ///
     /// # Panics
     /// If `bins` is 0 or above [`Self::MAX_BINS`], or `range` is not in (0, ½].
@@ -57,14 +56,10 @@ impl PairHistogram {
         let bins_per_unit = bins as f64 / range;
         assert!(bins_per_unit.is_finite(), "{bins} bins in {range} are too narrow");
         let n = set.len();
-        // A little wider than the range, so that no rounding puts a near pair two cells apart.
-        let widest = (1.0 / (range * (1.0 + 1e-12))) as usize;
-        let cells = widest.min((n as f64).sqrt() as usize).min(CellGrid::MAX_CELLS_PER_SIDE);
         let new = || Counter::new(bins, bins_per_unit);
-        let counts = if cells < 3 {
-            count_all(&Coordinates::of(set.points()), new)
-        } else {
-            count_near(&CellGrid::with_cells_per_side(set, cells), new)
+        let counts = match CellPairs::within(set, range) {
+            None => count_all(&Coordinates::of(set.points()), new),
+            Some(pairs) => count_near(&pairs, new),
         };
         Self { points: n, bins_per_unit, counts }
     }
@@ -121,38 +116,14 @@ fn count_all(points: &Coordinates, new: impl Fn() -> Counter + Sync) -> Vec<u64>
     in_blocks(n.div_ceil(ROWS), pairs < PARALLEL_PAIRS, new, count_block)
 }
 
-/// Pairs within a cell and with the four cells before it, so that every pair comes up once; needs
-/// at least 3 cells a side, each at least as wide as the histogram's range.
-fn count_near(grid: &CellGrid, new: impl Fn() -> Counter + Sync) -> Vec<u64> {
-    let points = Coordinates::of(grid.all().points);
-    let m = grid.cells_per_side();
-    let mut starts = Vec::with_capacity(m * m + 1);
-    starts.push(0);
-    for (iy, ix) in (0..m).flat_map(|iy| (0..m).map(move |ix| (iy, ix))) {
-        starts.push(starts[starts.len() - 1] + grid.cell(ix, iy).points.len());
-    }
-    let cell = |ix: usize, iy: usize| -> Range<usize> {
-        let c = iy * m + ix;
-        starts[c]..starts[c + 1]
-    };
+/// Pairs of the same or neighbouring cells.
+fn count_near(pairs: &CellPairs, new: impl Fn() -> Counter + Sync) -> Vec<u64> {
+    let points = Coordinates::of(pairs.points());
     let count_row = |mut counter: Counter, iy: usize| {
-        let below = (iy + m - 1) % m;
-        for ix in 0..m {
-            let (left, right) = ((ix + m - 1) % m, (ix + 1) % m);
-            let own = cell(ix, iy);
-            for row in own.clone() {
-                counter.count(&points, row, row + 1..own.end);
-                for others in
-                    [cell(left, iy), cell(left, below), cell(ix, below), cell(right, below)]
-                {
-                    counter.count(&points, row, others);
-                }
-            }
-        }
+        pairs.for_each_in_row(iy, |point, others| counter.count(&points, point, others));
         counter
     };
-    let pairs = (points.len() as u64).pow(2) / (m as u64).pow(2) * 5;
-    in_blocks(m, pairs < PARALLEL_PAIRS, new, count_row)
+    in_blocks(pairs.rows(), pairs.expected_pairs() < PARALLEL_PAIRS, new, count_row)
 }
 
 /// The sum of what `count` adds in each block; integers, so the order is of no consequence.
