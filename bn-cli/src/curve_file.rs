@@ -9,7 +9,8 @@ use anyhow::Context;
 use bn_core::{Density, NormalizedDistance, NormalizedFrequency};
 use bn_spectral::Target;
 
-use crate::{Failure, Outcome, input};
+use crate::input::Stdin;
+use crate::{Failure, Outcome};
 
 /// What a header says about the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +88,7 @@ pub(crate) fn start_of(path: &Path) -> Vec<u8> {
 pub(crate) fn read(path: &Path, density: Density) -> Outcome<Target> {
     let name = path.display();
     if path.as_os_str() == "-" {
-        return parse_bytes(&input::stdin_bytes()?, density);
+        return read_stdin(Stdin::open()?, density);
     }
     let size = std::fs::metadata(path).map_or(0, |data| data.len());
     if size > LONGEST {
@@ -99,9 +100,14 @@ pub(crate) fn read(path: &Path, density: Density) -> Outcome<Target> {
     parse(&text, density).map_err(|failure| failure.context(name.to_string()))
 }
 
-/// The curve in what came from standard input, as [`read`].
-pub(crate) fn parse_bytes(bytes: &[u8], density: Density) -> Outcome<Target> {
-    let text = std::str::from_utf8(bytes).map_err(Failure::usage);
+/// The curve that comes from standard input, as [`read`].
+pub(crate) fn read_stdin(stdin: Stdin, density: Density) -> Outcome<Target> {
+    let bytes = stdin.into_bytes(LONGEST)?;
+    let text = if bytes.len() as u64 > LONGEST {
+        Err(Failure::misuse(format!("more than {LONGEST} bytes are too many for a curve")))
+    } else {
+        std::str::from_utf8(&bytes).map_err(Failure::usage)
+    };
     text.and_then(|text| parse(text, density)).map_err(|failure| failure.context("standard input"))
 }
 

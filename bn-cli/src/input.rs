@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use bn_core::Ensemble;
 use bn_core::io::{self, Format, ReadError, ReadOptions, ReadProblem};
 
@@ -24,48 +24,69 @@ pub fn read(path: &Path, format: Option<Format>, wrap: bool) -> Outcome<Ensemble
 }
 
 fn read_stdin(format: Option<Format>, options: ReadOptions) -> Outcome<Ensemble> {
-    parse_stdin(&stdin_bytes()?, format, options)
+    Stdin::open()?.into_sets(format, options)
 }
 
-/// All of standard input, to be looked at before it is read as something.
-pub(crate) fn stdin_bytes() -> Outcome<Vec<u8>> {
-    let mut bytes = Vec::new();
-    std::io::stdin()
-        .lock()
-        .read_to_end(&mut bytes)
-        .context("cannot read standard input")
-        .map_err(Failure::failed)?;
-    Ok(bytes)
+/// Standard input, of which the first bytes can be looked at before it is read as something.
+pub(crate) struct Stdin {
+    head: Vec<u8>,
+    rest: std::io::StdinLock<'static>,
 }
 
-/// The sets in what came from standard input.
-pub(crate) fn parse_stdin(
-    bytes: &[u8],
-    format: Option<Format>,
-    options: ReadOptions,
-) -> Outcome<Ensemble> {
-    let format = format.unwrap_or_else(|| recognize(bytes));
-    io::read(format, "standard input", bytes, options).map_err(failure)
+/// Bytes to tell formats by.
+const HEAD: u64 = 1 << 10;
+
+impl Stdin {
+    pub(crate) fn open() -> Outcome<Self> {
+        let (mut head, mut rest) = (Vec::new(), std::io::stdin().lock());
+        rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(unreadable)?;
+        Ok(Self { head, rest })
+    }
+
+    /// The first bytes.
+    pub(crate) fn head(&self) -> &[u8] {
+        &self.head
+    }
+
+    /// All sets, read as a stream.
+    pub(crate) fn into_sets(
+        self,
+        format: Option<Format>,
+        options: ReadOptions,
+    ) -> Outcome<Ensemble> {
+        let format = format.unwrap_or_else(|| recognize(&self.head));
+        io::read(format, "standard input", self.head.chain(self.rest), options).map_err(failure)
+    }
+
+    /// All bytes, or one more than `most`.
+    pub(crate) fn into_bytes(self, most: u64) -> Outcome<Vec<u8>> {
+        let Self { head: mut bytes, rest } = self;
+        let left = (most + 1).saturating_sub(bytes.len() as u64);
+        rest.take(left).read_to_end(&mut bytes).map_err(unreadable)?;
+        Ok(bytes)
+    }
+}
+
+fn unreadable(error: std::io::Error) -> Failure {
+    Failure::failed(anyhow!(error).context("cannot read standard input"))
 }
 
 /// The format that bytes without a name are most likely in: by the mark of `.npy`, `.json` or `.eps`,
-/// lines with `#` anywhere, a comma in the first line. `.rps` has no mark of its own and must
-/// be named.
-fn recognize(bytes: &[u8]) -> Format {
-    let text = bytes.trim_ascii_start();
+/// a comma in the first line. `.rps` has no mark of its own and must be named; other text may hold
+/// several sets.
+fn recognize(head: &[u8]) -> Format {
+    let text = head.trim_ascii_start();
     let first = text.split(|&byte| byte == b'\n').next().unwrap_or_default();
-    if bytes.starts_with(b"\x93NUMPY") {
+    if head.starts_with(b"\x93NUMPY") {
         Format::Npy
     } else if text.starts_with(b"{") {
         Format::Json
     } else if text.starts_with(b"%!") {
         Format::Eps
-    } else if text.contains(&b'#') {
-        Format::Dat
-    } else if first.contains(&b',') {
+    } else if first.contains(&b',') && !first.starts_with(b"#") {
         Format::Csv
     } else {
-        Format::Txt
+        Format::Dat
     }
 }
 
@@ -93,7 +114,8 @@ mod tests {
 
     #[test]
     fn a_count_says_that_commas_are_no_csv() {
-        assert_eq!(recognize(b"2\n0.1,0.2\n0.3,0.4\n"), Format::Txt);
+        assert_eq!(recognize(b"2\n0.1,0.2\n0.3,0.4\n"), Format::Dat);
+        assert_eq!(recognize(b"# a, b\n0.1 0.2\n"), Format::Dat);
         assert_eq!(recognize(b"0.1,0.2\n0.3,0.4\n"), Format::Csv);
     }
 
@@ -101,11 +123,13 @@ mod tests {
     fn formats_are_recognized_by_their_first_bytes() {
         let set = bn_core::PointSet::new(vec![bn_core::DVec2::new(0.25, 0.5); 3]).expect("valid");
         for format in Format::ALL {
-            let sets = if format == Format::Dat { vec![set.clone(); 2] } else { vec![set.clone()] };
             let mut bytes = Vec::new();
-            io::write(format, &sets, &mut bytes).expect("in memory");
-            if format != Format::Rps {
-                assert_eq!(recognize(&bytes), format);
+            io::write(format, std::slice::from_ref(&set), &mut bytes).expect("in memory");
+            match format {
+                Format::Rps => {}
+                // All that is a .txt is a .dat.
+                Format::Txt => assert_eq!(recognize(&bytes), Format::Dat),
+                _ => assert_eq!(recognize(&bytes), format),
             }
         }
     }

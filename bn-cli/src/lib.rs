@@ -9,7 +9,8 @@
 //! - [`output`]: files that appear whole or not at all;
 //! - [`commands`]: the subcommands of `bn`.
 //!
-//! Invariant: holds no number of the thesis; every formula lives in a lower crate.
+//! Invariant: what a statistic is, is defined in a lower crate; here are only its errors over the sets,
+//! its units and its pictures. No value of the thesis's tables.
 
 pub mod analysis;
 pub mod commands;

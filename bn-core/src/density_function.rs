@@ -98,7 +98,7 @@ pub enum DensityFunctionError {
 }
 
 impl DensityFunction {
-    /// The most pixels: 2²⁶, about 1 GB with the sums.
+    /// The most pixels: 2²⁶, 1 to 2 GB with the sums.
     pub const MAX_PIXELS: usize = 1 << 26;
 
     /// The density of these pixels, row by row from y = 0, in any unit.

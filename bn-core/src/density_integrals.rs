@@ -44,6 +44,7 @@ struct Column {
 
 /// What a density adds up to over a region, about an origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moments {
     /// ∫ ρ: the part of all points that the region is to hold.
     pub mass: f64,

@@ -3,8 +3,10 @@
 //! The domain is the unit square [0, 1)² with opposite sides identified. A [`PointSet`] can only
 //! hold points of that domain, an [`Ensemble`] several sets; [`torus`] measures distances on it,
 //! [`Density`] knows the length and frequency that results are normalised by, [`DensityFunction`]
-//! says where points are wanted how densely ([`DensityIntegrals`] how many an area holds), [`CellGrid`] answers neighbour queries, [`Curve`] holds a sampled function, [`Seed`] gives independent random
-//! streams that are the same on every machine, and [`io`] reads and writes point files.
+//! says where points are wanted how densely ([`DensityIntegrals`] how many an area holds),
+//! [`CellGrid`] answers neighbour queries, [`Curve`] holds a sampled function, [`Seed`] gives
+//! independent random streams that are the same on every machine, and [`io`] reads and writes point
+//! files.
 //!
 //! ```
 //! use bn_core::{DVec2, PointSet, torus};
@@ -29,7 +31,7 @@ mod progress;
 mod seed;
 pub mod torus;
 
-pub use cell_grid::CellGrid;
+pub use cell_grid::{CellGrid, CellPoints};
 pub use curve::Curve;
 pub use density::{Density, NormalizedDistance, NormalizedFrequency};
 pub use density_function::{DensityFunction, DensityFunctionError};

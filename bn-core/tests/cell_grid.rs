@@ -229,8 +229,11 @@ fn clustered_sets_do_not_go_quadratic() {
     let n = 200_000;
     let mut rng = Seed::new(8).stream(0);
     let equal = vec![DVec2::new(0.25, 0.75); n];
-    let in_one_cell = (0..n).map(|_| 1e-4 * DVec2::new(rng.random(), rng.random())).collect();
-    for points in [equal, in_one_cell] {
+    let mut within = |size: f64| -> Vec<DVec2> {
+        (0..n).map(|_| size * DVec2::new(rng.random(), rng.random())).collect()
+    };
+    // Squares of distances: ordinary, with few digits, 0.
+    for points in [equal, within(1e-4), within(1e-158), within(1e-300)] {
         let set = PointSet::new(points).expect("valid");
         let grid = CellGrid::new(&set);
         for (i, &p) in (0..).zip(set.points()) {

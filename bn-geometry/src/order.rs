@@ -16,7 +16,7 @@ use crate::Triangulation;
 /// depends on how squares are cut: the triangulation cuts all alike, so a square lattice has
 /// q⁶ = ⅓ (thesis table 4.2: 0.33).
 ///
-/// Absolute error below `fold`·1e-15 for points as the triangulation holds them: on its coordinate
+/// Absolute error below (`fold` + 10)·1e-15 for points as the triangulation holds them: on its coordinate
 /// grid, which turns a bond of length d by up to 2⁻⁵⁰/d, and qⁿ's angle by `fold` times that.
 /// O(N log `fold`) for N points.
 pub fn local_bond_orientational_order(triangulation: &Triangulation, fold: u32) -> Vec<f64> {

@@ -30,7 +30,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Invariant: makes no pattern, prints nothing, knows no number of the thesis.
+//! Invariant: makes no pattern, prints nothing, knows no value of the thesis's tables.
 
 mod band_limited;
 mod image;

@@ -28,6 +28,18 @@ impl BucketGrid {
         Self::new(n.isqrt())
     }
 
+    /// Makes the cells hold about one point each, if they hold more than two or less than half of
+    /// one.
+    pub(crate) fn fit(&mut self) {
+        let cells = self.heads.len();
+        if (cells / 2..=2 * cells).contains(&self.points.len()) {
+            return;
+        }
+        let mut grid = Self::for_points(self.points.len());
+        self.points.drain(..).for_each(|p| grid.insert(p));
+        *self = grid;
+    }
+
     /// The points, in the order of insertion.
     pub(crate) fn points(&self) -> &[DVec2] {
         &self.points

@@ -26,7 +26,7 @@ use crate::{
 pub struct Jittered {
     /// How the displacements are distributed.
     pub distribution: Displacement,
-    /// Width of the displacements as a fraction of the cell's size, at least 0 and finite: 0 gives
+    /// Width of the displacements as a fraction of the cell's size, from 0 to 10⁶: 0 gives
     /// the grid of cell centres, 1 fills the cell, more reaches into the neighbours.
     pub width: f64,
 }

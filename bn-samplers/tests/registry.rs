@@ -308,7 +308,7 @@ const GOLDEN: &[Golden] = &[
     ("dart-throwing", 2, &[("radius", "0.2")], 0xc45d_a87f_dbb9_7eec),
     ("maximal-poisson-disk", 2, &[], 0x352a_ef5a_d857_23d0),
     ("maximal-poisson-disk", 2, &[("exact", "true")], 0x850b_41c7_7bd8_da32),
-    ("best-candidate", 1, &[], 0x14b3_a6c2_53ee_d9f6),
+    ("best-candidate", 2, &[], 0x4598_74dc_c34d_31a3),
     ("kernel-density", 1, &[], 0xc6e8_c0c6_18ac_df63),
     ("electrostatic", 1, &[("iterations", "20")], 0x5d48_b846_e1df_1868),
     ("farthest-point-strategy", 2, &[], 0xf4dd_bca8_7323_7965),

@@ -27,7 +27,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Invariant: never sees a triangulation, never prints, knows no number of the thesis.
+//! Invariant: never sees a triangulation, never prints, knows no value of the thesis's tables.
 
 mod autocorrelation;
 mod bessel;
@@ -49,8 +49,8 @@ pub use bessel::{j0, j0_slice, j1, j1_slice, jinc, jinc_slice};
 pub use bn_fft::Complex;
 pub use hankel::{BesselSums, BesselSumsScratch, HankelPlan};
 pub use measures::{
-    PowerToRdf, QUIET_POWER, RdfToPower, RingMeans, SpectrumError, WindowedSpectrum,
-    effective_nyquist, oscillation,
+    OSCILLATION_RANGE, PowerToRdf, QUIET_POWER, RdfToPower, RingMeans, SpectrumError,
+    WindowedSpectrum, effective_nyquist, oscillation,
 };
 pub use nufft::{
     FullPlane, HalfPlane, ModeColumns, Nufft, NufftError, NufftOptions, Real, direct_complex_modes,

@@ -8,6 +8,7 @@ use crate::jinc;
 
 /// Stratified jitter (thesis §3.2.2): one point, uniformly placed, in each of m × m cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct JitteredGrid {
     cells_per_side: f64,
 }
@@ -49,6 +50,7 @@ fn sinc(x: f64) -> f64 {
 
 /// Frequencies |k| of equal length at which a lattice has its power, P = n in each mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LatticeRing {
     /// |k| in cycles per unit.
     pub frequency: f64,

@@ -5,6 +5,7 @@
 /// Its maximum is at x = 0 and h is its half-width: the thesis's "window of width r₁" is the one of
 /// half-width r₁. The main lobe of its transform reaches 3/(2h) to either side.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Window {
     a: [f64; 3],
 }

@@ -1,12 +1,9 @@
 //! What comes from the exact periodogram.
 
 use bn_core::{Density, PointSet};
-use bn_spectral::{PeriodogramOptions, RadialPower};
+use bn_spectral::{OSCILLATION_RANGE, PeriodogramOptions, RadialPower};
 
 use super::Estimate;
-
-/// Ω looks at the spectrum up to this far, in √n/2, beyond where it first reaches 1.
-const OSCILLATION_RANGE: f64 = 10.0;
 
 /// Where to look first for the place where the spectrum reaches 1, in √n/2: beyond the first peak
 /// of any pattern that is even, the hexagonal lattice's at 2.15 included.

@@ -8,8 +8,6 @@ use super::{Analysis, Statistic, WINDOWED_LIMIT};
 use crate::plot::{Grid, Text};
 use crate::report::{self, ReportData};
 
-/// Distances are shown up to this many `d_hex`, or half the torus.
-const RANGE: f64 = 8.0;
 /// Bins of the RDF over that range, where there are points enough to fill them.
 const RDF_BINS: usize = 400;
 /// Cells a side of the autocorrelation, likewise.
@@ -29,7 +27,7 @@ impl Analysis<'_> {
         max_frequency: usize,
     ) -> ReportData {
         let n = self.sets[0].len();
-        let range = (RANGE * self.density.hexagonal_spacing()).min(0.5);
+        let range = (report::MOST_DISTANCE * self.density.hexagonal_spacing()).min(0.5);
         let fewer = thinned(self.sets, range);
         let pairs = Analysis::of(fewer.as_deref().unwrap_or(self.sets));
         let provenance = match &fewer {

@@ -7,6 +7,7 @@ use bn_core::{Density, PointSet};
 use bn_spectral::{Realizability, SinglePeak, Target, highest_step};
 use clap::Args;
 
+use crate::input::Stdin;
 use crate::{Failure, Outcome, curve_file, input};
 
 /// Which spectrum.
@@ -68,12 +69,12 @@ impl TargetArgs {
             ("single-peak", _) => self.single_peak(density)?,
             (_, Some(path)) if file.is_none() => curve_file::read(path, density)?,
             ("-", _) => {
-                let bytes = input::stdin_bytes()?;
-                if !curve_file::looks_like_curve(&bytes) {
-                    let sets = input::parse_stdin(&bytes, None, ReadOptions::default())?;
+                let stdin = Stdin::open()?;
+                if !curve_file::looks_like_curve(stdin.head()) {
+                    let sets = stdin.into_sets(None, ReadOptions::default())?;
                     return imitated(sets.sets(), name, n);
                 }
-                curve_file::parse_bytes(&bytes, density)?
+                curve_file::read_stdin(stdin, density)?
             }
             (_, Some(path)) if curve_file::looks_like_curve(&curve_file::start_of(path)) => {
                 curve_file::read(path, density)?

@@ -222,7 +222,8 @@ pub(super) fn px(value: f64) -> String {
     number(value, 2)
 }
 
-/// A number with at least one decimal asked for, less trailing zeros; 0 for what is not finite, which no caller should pass.
+/// A number with at least one decimal asked for, less trailing zeros; 0 for what is not finite,
+/// which no caller should pass.
 fn number(value: f64, decimals: usize) -> String {
     debug_assert!(value.is_finite(), "coordinate {value}");
     let value = if value.is_finite() { value } else { 0.0 };

@@ -4,8 +4,8 @@ use bn_core::Curve;
 
 use crate::plot::{Axis, Panel, Range, Reference, Series, Text};
 
-/// Distances shown in the RDF, in `d_hex`.
-const MOST_DISTANCE: f64 = 8.0;
+/// The distances shown, in `d_hex`: in the RDF and the autocorrelation.
+pub const MOST_DISTANCE: f64 = 8.0;
 
 /// Frequencies shown, in √n/2.
 const MOST_FREQUENCY: f64 = 10.0;

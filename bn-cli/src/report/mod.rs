@@ -11,6 +11,7 @@ mod files;
 mod page;
 mod statistics;
 
+pub use curves::MOST_DISTANCE;
 pub use page::{MOST_CELLS, WHITE, page};
 pub use statistics::Statistic;
 

@@ -38,8 +38,7 @@ const CROWDED: u64 = 32;
 /// cells in total. In a badly clustered set (on the average over 32 points in a point's cell) every
 /// search goes through a k-d tree instead, which the first of them builds once, in O(n log n).
 /// What remains slow: a query far away from all points of a set that is not clustered looks at all
-/// cells of the void that it lies in, and points within 1e-145 of each other that do not coincide
-/// are looked at one by one.
+/// cells of the void that it lies in.
 ///
 /// ```
 /// use bn_core::{CellGrid, DVec2, PointSet};

@@ -17,6 +17,17 @@ pub(super) trait Probe {
     /// The square of the distance beyond which points need not be shown any more.
     fn reach_squared(&self) -> f64;
 
+    /// How near points may be that are at least this far away in each axis: what comes first when
+    /// nearer ones do. Rises with the distance.
+    fn clearance(gap: DVec2) -> f64 {
+        gap.length_squared()
+    }
+
+    /// The clearance beyond which points need not be shown any more.
+    fn reach(&self) -> f64 {
+        self.reach_squared()
+    }
+
     /// Looks at a few points, and breaks if no others can matter.
     fn look(&mut self, at: CellPoints<'_>) -> ControlFlow<()>;
 }
@@ -82,8 +93,8 @@ impl Probe for Nearest {
                 (self.distance_squared, self.index, self.point) = (d, index, q);
             }
         }
-        // Enough even if only the square is 0: `VeryNear` decides then.
-        if self.distance_squared == 0.0 {
+        // Enough: `VeryNear` decides then.
+        if self.distance_squared < UNDERFLOW {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
@@ -111,6 +122,15 @@ impl VeryNear {
 impl Probe for VeryNear {
     fn reach_squared(&self) -> f64 {
         UNDERFLOW
+    }
+
+    /// The distance along the farther axis, which no square can lose.
+    fn clearance(gap: DVec2) -> f64 {
+        gap.max_element()
+    }
+
+    fn reach(&self) -> f64 {
+        self.best.map_or(UNDERFLOW.sqrt(), |(distance, _)| distance)
     }
 
     fn look(&mut self, at: CellPoints<'_>) -> ControlFlow<()> {

@@ -49,7 +49,7 @@ impl Tree {
         self.search_node(0, p, probe)
     }
 
-    fn search_node(&self, node: usize, p: DVec2, probe: &mut impl Probe) -> ControlFlow<()> {
+    fn search_node<P: Probe>(&self, node: usize, p: DVec2, probe: &mut P) -> ControlFlow<()> {
         let Node { start, end, right, .. } = self.nodes[node];
         if right == 0 {
             let slots = start as usize..end as usize;
@@ -57,14 +57,15 @@ impl Tree {
             return probe.look(CellPoints { points, indices });
         }
         let (left, right) = (node + 1, right as usize);
-        let (to_left, to_right) = (self.nodes[left].clearance(p), self.nodes[right].clearance(p));
+        let clearance = |node: usize| P::clearance(self.nodes[node].gap(p));
+        let (to_left, to_right) = (clearance(left), clearance(right));
         let children = if to_right < to_left {
             [(right, to_right), (left, to_left)]
         } else {
             [(left, to_left), (right, to_right)]
         };
         for (child, clearance) in children {
-            if clearance <= probe.reach_squared() {
+            if clearance <= probe.reach() {
                 self.search_node(child, p, probe)?;
             }
         }
@@ -97,11 +98,9 @@ fn build(points: &mut [(DVec2, u32)], start: usize, nodes: &mut Vec<Node>) {
 }
 
 impl Node {
-    /// A lower bound of the squared distance between `p` and the points of the node.
-    fn clearance(&self, p: DVec2) -> f64 {
-        let x = gap(p.x, self.low.x, self.high.x);
-        let y = gap(p.y, self.low.y, self.high.y);
-        x * x + y * y
+    /// How far the points of the node are from `p` at least, in each axis.
+    fn gap(&self, p: DVec2) -> DVec2 {
+        DVec2::new(gap(p.x, self.low.x, self.high.x), gap(p.y, self.low.y, self.high.y))
     }
 }
 

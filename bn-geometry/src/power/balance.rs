@@ -13,7 +13,8 @@ use super::laplacian::Laplacian;
 /// The weights maximise a concave function (Aurenhammer, Hoffmann and Aronov, "Minkowski-type
 /// theorems and least-squares clustering", Algorithmica 20(1), 1998), whose gradient is what cells
 /// lack of their areas. [`BalancedDiagram::balance`] climbs it by Newton's method, damped so
-/// that no cell loses more than half of its area and the worst error falls: it converges
+/// that no cell falls below half of the least area at the start (or of 1/n) and the norm of what cells
+/// lack falls: it converges
 /// from the Voronoi diagram of any distinct points (Kitagawa, Mérigot and Thibert, "Convergence of a
 /// Newton algorithm for semi-discrete optimal transport", J. Eur. Math. Soc. 21(9), 2019), quadratically
 /// in the end, and in two or three steps where the weights are about right already.

@@ -175,7 +175,8 @@ impl PowerDiagram {
     }
 
     /// Σ ∫ |x − pᵢ|² over the cells: with the weights that give all cells the same area, the cost
-    /// of carrying the uniform distribution (or the density) to the points at best. Added up in the order of the points.
+    /// of carrying the uniform distribution (or the density) to the points at best. Added up in the
+    /// order of the points.
     pub fn transport_cost(&self) -> f64 {
         self.cells.iter().map(|cell| cell.second_moment).sum()
     }

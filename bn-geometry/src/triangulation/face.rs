@@ -9,6 +9,7 @@ pub const NONE: u32 = u32::MAX;
 ///
 /// Ids are small: below twice the largest number of vertices that the triangulation ever had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FaceId(pub(crate) u32);
 
 impl FaceId {

@@ -9,6 +9,7 @@ use crate::circle::{Circle, circumcircle};
 
 /// A face: three points, counter-clockwise, and their places.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Face {
     /// Names the face.
     pub id: FaceId,

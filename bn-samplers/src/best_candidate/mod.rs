@@ -19,8 +19,8 @@ use crate::{
 ///
 /// Thesis p. 110; D. P. Mitchell, "Spectrally optimal sampling for distribution ray tracing",
 /// Computer Graphics 25(4), 1991. Not all candidates are made: how many fall where one could be
-/// the best is drawn first, and only those are placed, which is the same in distribution. About
-/// 100 candidates a point are placed instead of n/2 times `candidates`.
+/// the best is drawn first, and only those are placed, which is the same in distribution. Some
+/// tens of candidates a point are placed instead of n/2 times `candidates`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BestCandidate {
     /// Candidates for each point, as a multiple of the points before it; from 1 to 1000. With 8,
@@ -58,7 +58,7 @@ pub(crate) const METHOD: Method = Method {
         let candidates = candidates.map_or(defaults.candidates, |candidates| candidates as u32);
         Ok(Box::new(BestCandidate { candidates }))
     },
-    version: 1,
+    version: 2,
 };
 
 const MOST: u64 = 1000;
@@ -72,7 +72,7 @@ const POINTS_PER_LOOK: usize = 1 << 8;
 /// With fewer candidates in the voids than this, the distance that makes a void is lowered: far
 /// enough from 0 that there is nearly always one.
 const FEWEST_HITS: usize = 8;
-/// By this factor.
+/// The first such distance over that of the last point.
 const LOWERING: f64 = 0.96;
 
 impl Sampler for BestCandidate {
@@ -83,7 +83,7 @@ impl Sampler for BestCandidate {
             return Err(SampleError::InvalidOption { option: "candidates", reason });
         }
         let mut rng = seed.stream(0);
-        let mut points = BucketGrid::for_points(n);
+        let mut points = BucketGrid::new(1);
         let mut voids: Option<Voids> = None;
         for k in 0..n {
             if k % POINTS_PER_LOOK == 0 {
@@ -94,18 +94,18 @@ impl Sampler for BestCandidate {
                 Some(voids) => best_in_voids(&points, voids, count, &mut rng),
                 None => best_anywhere(&points, count, f64::INFINITY, &mut rng),
             };
-            if k + 1 >= FIRST_POINTS {
-                let radius = match &voids {
-                    Some(voids) if best.hits >= FEWEST_HITS => None,
-                    Some(voids) => Some(LOWERING * voids.radius()),
-                    None => Some(LOWERING * best.distance),
-                };
-                points.insert(best.place);
-                if let Some(radius) = radius {
-                    voids = Some(Voids::new(&points, radius));
+            points.insert(best.place);
+            let to_come = f64::from(self.candidates) * (k + 1) as f64;
+            match &mut voids {
+                Some(voids) if best.hits < FEWEST_HITS => {
+                    points.fit();
+                    voids.lower(&points, to_come);
                 }
-            } else {
-                points.insert(best.place);
+                None if k + 1 >= FIRST_POINTS => {
+                    points.fit();
+                    voids = Some(Voids::new(&points, LOWERING * best.distance, to_come));
+                }
+                _ => {}
             }
         }
         Ok(Sample::new(points.into_points(), Report::new()))

@@ -30,6 +30,7 @@ impl Contest<'_> {
         let mut waiting = Vec::new();
         for (index, dart) in (0..).zip(own.darts()) {
             if dart.fate() != Fate::Open {
+                dart.wait_until_entered();
                 continue;
             }
             // Earlier darts of this tile are settled.
@@ -56,23 +57,26 @@ impl Contest<'_> {
                     self.settle_among_settled(dart);
                 }
             }
+            dart.wait_until_entered();
             waiting.pop();
         }
     }
 
     /// Settles a dart that depends on none that isn't settled.
     ///
-    /// A disk that covers it can't be that of a later dart: that one would have waited for it.
+    /// A disk that covers it can't be that of a later dart: that one would have waited for it. What
+    /// it depends on is settled, so that the grid has all of their disks.
     fn settle_among_settled(&self, dart: &Dart) {
         if self.grid.covers_place(dart.place, dart.cell) {
             dart.fall();
-        } else {
+        } else if dart.claim() {
             self.grid.insert(dart.place, dart.cell);
             dart.stick();
         }
+        dart.wait_until_entered();
     }
 
-    /// An earlier dart too near to this one whose fate isn't known.
+    /// An earlier dart too near to this one that isn't settled.
     fn unsettled_rival(&self, name: Name) -> Option<Name> {
         let dart = self.dart(name);
         let mut found = None;
@@ -83,7 +87,7 @@ impl Contest<'_> {
                 for (index, rival) in self.tiles[tile].darts_in(Cell { column, row }) {
                     let rival_name = (tile as u32, index);
                     let is_earlier = (rival.time, rival_name) < (dart.time, name);
-                    if is_earlier && rival.fate() == Fate::Open && self.are_too_near(rival, dart) {
+                    if is_earlier && !rival.is_settled() && self.are_too_near(rival, dart) {
                         found = Some(rival_name);
                     }
                 }

@@ -12,7 +12,7 @@ use crate::error::reserve;
 ///
 /// The grid is padded by copies of the cells beyond the seam, with coordinates to match: queries
 /// never wrap. Threads may enter centres and ask at the same time; a question may miss a centre
-/// that is just being entered.
+/// that is just being entered, some of its copies or all.
 #[derive(Debug)]
 pub(super) struct DiskGrid {
     /// Cells per side of the unit square.
@@ -141,6 +141,8 @@ impl DiskGrid {
                 let word = row * self.words + column / 32;
                 // After the place: who sees the bit sees the place.
                 self.taken[word].fetch_or(1 << (column % 32), Ordering::Release);
+                #[cfg(test)]
+                delay::pause();
                 if column >= 32 {
                     self.taken[word - 1].fetch_or(1 << (column % 32 + 32), Ordering::Release);
                 }
@@ -190,5 +192,29 @@ impl Centre {
     fn move_to(&self, place: DVec2) {
         self.0[0].store(place.x.to_bits(), Ordering::Relaxed);
         self.0[1].store(place.y.to_bits(), Ordering::Relaxed);
+    }
+}
+
+/// Makes the moments long in which a centre is entered only in part, for tests of the order in which
+/// threads see it.
+#[cfg(test)]
+pub(super) mod delay {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::time::Duration;
+
+    static LONG: AtomicBool = AtomicBool::new(false);
+
+    /// Calls `f` with slow entries.
+    pub(crate) fn with_slow_entries<T>(f: impl FnOnce() -> T) -> T {
+        LONG.store(true, Ordering::Relaxed);
+        let value = f();
+        LONG.store(false, Ordering::Relaxed);
+        value
+    }
+
+    pub(super) fn pause() {
+        if LONG.load(Ordering::Relaxed) {
+            std::thread::sleep(Duration::from_micros(50));
+        }
     }
 }

@@ -124,12 +124,19 @@ fn with_radius(
     let mut thrower = Thrower::new(radius, expected as usize, seed)?;
     let ending = thrower.throw(None, observer)?;
     let count = thrower.points().len();
+    let unresolved = unresolved(ending);
     let report = Report::new()
         .with("points", count)
         .with("radius_d_hex", normalized.value())
         .with("darts", thrower.darts())
-        .with("unresolved_squares", unresolved(ending))
+        .with("unresolved_squares", unresolved)
         .with_note(format!("made {count} points"));
+    let report = match unresolved {
+        0 => report,
+        _ => report.with_note(format!(
+            "{unresolved} squares of less than 1e-8 radii may have room for a point"
+        )),
+    };
     Ok(Sample::new(thrower.into_points(), report))
 }
 

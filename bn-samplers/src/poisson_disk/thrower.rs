@@ -147,6 +147,7 @@ impl Thrower {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::poisson_disk::disk_grid::delay::with_slow_entries;
     use bn_core::{Density, torus};
 
     /// What sticks is what sticks if the darts come one by one in the order of time, whatever the
@@ -193,6 +194,10 @@ mod tests {
         };
         for seed in 0..12 {
             assert!(points(8, seed) == points(1, seed), "seed {seed}");
+        }
+        for seed in 0..3 {
+            let slow = with_slow_entries(|| points(16, seed));
+            assert!(slow == points(1, seed), "seed {seed}, slow entries");
         }
     }
 

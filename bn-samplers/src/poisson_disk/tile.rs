@@ -51,6 +51,9 @@ const NONE: u32 = u32::MAX;
 pub(super) enum Fate {
     /// Not known yet.
     Open,
+    /// It makes a point, and a thread is entering it into the grid: some of its copies may be
+    /// missing.
+    Entering,
     /// It makes a point.
     Sticks,
     /// A disk covers it.
@@ -165,12 +168,24 @@ impl Dart {
     pub(super) fn fate(&self) -> Fate {
         match self.fate.load(Ordering::Acquire) {
             0 => Fate::Open,
-            1 => Fate::Sticks,
+            1 => Fate::Entering,
+            2 => Fate::Sticks,
             _ => Fate::Falls,
         }
     }
 
-    /// Notes that it sticks; it has to be in the grid already.
+    /// Whether its fate is known and, if it sticks, all of its disk is in the grid.
+    pub(super) fn is_settled(&self) -> bool {
+        matches!(self.fate(), Fate::Sticks | Fate::Falls)
+    }
+
+    /// Notes that it sticks, if its fate was open: the caller, and nobody else, has to enter it into
+    /// the grid and to [`stick`](Self::stick) it.
+    pub(super) fn claim(&self) -> bool {
+        self.leave_open(Fate::Entering)
+    }
+
+    /// Notes that it is in the grid.
     pub(super) fn stick(&self) {
         self.fate.store(Fate::Sticks as u8, Ordering::Release);
     }
@@ -178,11 +193,22 @@ impl Dart {
     /// Notes that a disk covers it.
     ///
     /// That may be its own: while this thread asked the grid, another one may have found that the
-    /// dart sticks. Hence that finding stands, whichever comes first.
+    /// dart sticks. Hence that finding stands.
     pub(super) fn fall(&self) {
-        let (open, falls) = (Fate::Open as u8, Fate::Falls as u8);
-        // Failing means that it sticks, or fell before.
-        let _ = self.fate.compare_exchange(open, falls, Ordering::AcqRel, Ordering::Acquire);
+        self.leave_open(Fate::Falls);
+    }
+
+    fn leave_open(&self, fate: Fate) -> bool {
+        let open = Fate::Open as u8;
+        self.fate.compare_exchange(open, fate as u8, Ordering::AcqRel, Ordering::Acquire).is_ok()
+    }
+
+    /// Waits while another thread enters it: a few dozen instructions, unless that thread is
+    /// interrupted.
+    pub(super) fn wait_until_entered(&self) {
+        while self.fate() == Fate::Entering {
+            std::thread::yield_now();
+        }
     }
 }
 

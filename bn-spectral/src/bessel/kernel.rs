@@ -115,6 +115,8 @@ pub trait MulAdd {
 struct Fused;
 /// Whatever the target always has.
 struct Portable;
+/// Two roundings, on every CPU.
+struct Separate;
 
 impl MulAdd for Fused {
     #[inline(always)]
@@ -134,6 +136,13 @@ impl MulAdd for Portable {
     }
 }
 
+impl MulAdd for Separate {
+    #[inline(always)]
+    fn mul_add(a: f64, b: f64, c: f64) -> f64 {
+        a * b + c
+    }
+}
+
 /// `F` of every element of `x` into `out`.
 pub fn fill<F: Function>(x: &[f64], out: &mut [f64]) {
     assert_eq!(x.len(), out.len(), "one result for every argument");
@@ -143,6 +152,23 @@ pub fn fill<F: Function>(x: &[f64], out: &mut [f64]) {
         return unsafe { fill_avx2::<F>(x, out) };
     }
     fill_with::<F, Portable>(x, out);
+}
+
+/// As [`fill`], with the same bits on every CPU.
+pub fn fill_alike<F: Function>(x: &[f64], out: &mut [f64]) {
+    assert_eq!(x.len(), out.len(), "one result for every argument");
+    #[cfg(target_arch = "x86_64")]
+    if is_x86_feature_detected!("avx2") {
+        // SAFETY: the CPU has just been found to have the feature.
+        return unsafe { fill_alike_avx2::<F>(x, out) };
+    }
+    fill_with::<F, Separate>(x, out);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn fill_alike_avx2<F: Function>(x: &[f64], out: &mut [f64]) {
+    fill_with::<F, Separate>(x, out);
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -249,6 +275,8 @@ mod tests {
         for (column, fill) in [
             (1, fill_with::<J0, Portable> as fn(&[f64], &mut [f64])),
             (2, fill_with::<J1, Portable>),
+            (1, fill_alike::<J0>),
+            (2, fill_alike::<J1>),
         ] {
             fill(&x, &mut out);
             for (got, row) in out.iter().zip(&rows) {
@@ -257,5 +285,23 @@ mod tests {
                 assert!(error <= 4.0, "J{} at {}: {error} ε·M", column - 1, row[0]);
             }
         }
+    }
+
+    /// Vectorised or not, and however the slice was cut.
+    #[test]
+    fn alike_is_alike() {
+        let x: Vec<f64> =
+            (0..4000).map(|i| f64::from(i) * 0.037 - 20.0).chain([2e7, 0.0]).collect();
+        let (mut wide, mut narrow) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+        fill_alike::<J0>(&x, &mut wide);
+        for (x, out) in x.iter().zip(&mut narrow) {
+            fill_with::<J0, Separate>(std::slice::from_ref(x), std::slice::from_mut(out));
+        }
+        assert_eq!(wide, narrow);
+        fill_alike::<Jinc>(&x, &mut wide);
+        for (x, out) in x.chunks(7).zip(narrow.chunks_mut(7)) {
+            fill_with::<Jinc, Separate>(x, out);
+        }
+        assert_eq!(wide, narrow);
     }
 }

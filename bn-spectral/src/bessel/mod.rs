@@ -52,3 +52,13 @@ pub fn j1_slice(x: &[f64], out: &mut [f64]) {
 pub fn jinc_slice(x: &[f64], out: &mut [f64]) {
     kernel::fill::<kernel::Jinc>(x, out);
 }
+
+/// [`j0_slice`] with the same bits on every CPU, for what decides a point's position.
+pub(crate) fn j0_slice_alike(x: &[f64], out: &mut [f64]) {
+    kernel::fill_alike::<kernel::J0>(x, out);
+}
+
+/// [`jinc_slice`] with the same bits on every CPU, for what decides a point's position.
+pub(crate) fn jinc_slice_alike(x: &[f64], out: &mut [f64]) {
+    kernel::fill_alike::<kernel::Jinc>(x, out);
+}

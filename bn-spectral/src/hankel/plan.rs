@@ -1,7 +1,7 @@
 //! The transform of a function that is known at the nodes of a quadrature.
 
 use super::quadrature::gauss_panels;
-use crate::j0_slice;
+use crate::bessel::{j0_slice, j0_slice_alike};
 
 /// Kernel matrices up to this many entries (16 MB) are kept; above, J₀ is evaluated each time.
 const KEPT: usize = 1 << 21;
@@ -40,6 +40,8 @@ pub struct HankelPlan {
     frequencies: Vec<f64>,
     /// J₀(2πur), a row a frequency; empty if too large.
     kernel: Vec<f64>,
+    /// What evaluates J₀.
+    j0: fn(&[f64], &mut [f64]),
 }
 
 impl HankelPlan {
@@ -50,6 +52,15 @@ impl HankelPlan {
     /// If there are fewer than two breaks, they are not finite, ascending and ≥ 0, `scale` is not
     /// positive, a frequency is not finite, or more than 2²⁸ nodes would be needed.
     pub fn new(breaks: &[f64], scale: f64, frequencies: &[f64]) -> Self {
+        Self::with(j0_slice, breaks, scale, frequencies)
+    }
+
+    /// As [`Self::new`], with transforms of the same bits on every CPU.
+    pub(crate) fn alike(breaks: &[f64], scale: f64, frequencies: &[f64]) -> Self {
+        Self::with(j0_slice_alike, breaks, scale, frequencies)
+    }
+
+    fn with(j0: fn(&[f64], &mut [f64]), breaks: &[f64], scale: f64, frequencies: &[f64]) -> Self {
         assert!(breaks.len() >= 2 && breaks[0] >= 0.0, "breaks {breaks:?} are no range of radii");
         assert!(breaks.is_sorted_by(|a, b| a < b), "breaks must ascend");
         assert!(scale > 0.0, "scale {scale} is not a length");
@@ -63,7 +74,8 @@ impl HankelPlan {
         for (weight, r) in weights.iter_mut().zip(&nodes) {
             *weight *= std::f64::consts::TAU * r;
         }
-        let mut plan = Self { nodes, weights, frequencies: frequencies.to_vec(), kernel: vec![] };
+        let mut plan =
+            Self { nodes, weights, frequencies: frequencies.to_vec(), kernel: vec![], j0 };
         let entries = plan.nodes.len().saturating_mul(frequencies.len());
         if entries <= KEPT {
             let mut kernel = vec![0.0; entries];
@@ -144,7 +156,7 @@ impl HankelPlan {
             for (x, r) in x.iter_mut().zip(nodes) {
                 *x = std::f64::consts::TAU * u * r;
             }
-            j0_slice(x, row);
+            (self.j0)(x, row);
         }
     }
 }

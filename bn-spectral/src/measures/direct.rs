@@ -2,7 +2,7 @@
 
 use bn_core::{Density, NormalizedFrequency};
 
-use super::{LOUD_POWER, ONSET_POWER, OSCILLATION_SCALE, RING_WIDTH};
+use super::{LOUD_POWER, ONSET_POWER, OSCILLATION_RANGE, OSCILLATION_SCALE};
 
 /// Mean powers over rings `bounds[i]` < |k| ≤ `bounds[i + 1]` of modes, from an exact periodogram.
 ///
@@ -99,7 +99,7 @@ impl<'a> RingMeans<'a> {
     pub fn oscillation(&self, density: Density) -> Option<f64> {
         let rings = 0..self.power.len();
         let first = self.onset_ring()?;
-        let end = self.bounds[first] + RING_WIDTH * density.grid_nyquist();
+        let end = self.bounds[first] + OSCILLATION_RANGE * density.grid_nyquist();
         if self.bounds[self.power.len()] < end {
             return None;
         }

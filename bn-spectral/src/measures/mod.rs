@@ -33,7 +33,7 @@ const LOUD_POWER: f64 = 0.5;
 const ONSET_POWER: f64 = 0.98;
 
 /// Width of the ring that Ω looks at, in √n/2.
-const RING_WIDTH: f64 = 10.0;
+pub const OSCILLATION_RANGE: f64 = 10.0;
 
 /// Ω is this many times the root mean square of P − 1.
 const OSCILLATION_SCALE: f64 = 10.0;

@@ -2,7 +2,7 @@
 
 use bn_core::{Curve, Density, NormalizedFrequency};
 
-use super::{LOUD_POWER, ONSET_POWER, OSCILLATION_SCALE, RING_WIDTH};
+use super::{LOUD_POWER, ONSET_POWER, OSCILLATION_RANGE, OSCILLATION_SCALE};
 
 /// The effective Nyquist frequency of a spectrum sampled at ν = 0, Δν, 2Δν, … cycles per unit.
 ///
@@ -48,7 +48,7 @@ fn mean_power(power: &Curve) -> Vec<f64> {
 pub fn oscillation(power: &Curve, density: Density) -> Option<f64> {
     assert!(power.start() == 0.0, "the samples start at {} and not at 0", power.start());
     let (nu0, _) = power.iter().find(|&(_, p)| p >= ONSET_POWER)?;
-    let nu1 = nu0 + RING_WIDTH * density.grid_nyquist();
+    let nu1 = nu0 + OSCILLATION_RANGE * density.grid_nyquist();
     let end = nu1 * (1.0 + 1e-9);
     if power.end() + power.step() < nu1 {
         return None;

@@ -252,7 +252,7 @@ mod tests {
                             z * if inverse { root.conj() } else { root }
                         };
                         let want: Complex<f64> = signal.iter().enumerate().map(term).sum();
-                        // √size terms of size ≤ √2 with some ε each.
+                        // A term is at most √2 and off by some ten ε at worst, in step.
                         assert!(
                             (got - want).norm() < 2e-14 * (size as f64),
                             "{size}: {got} {want}"

@@ -39,6 +39,7 @@ pub enum NufftError {
 /// # Ok::<(), bn_spectral::NufftError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NufftOptions {
     max_frequency: usize,
     tolerance: f64,

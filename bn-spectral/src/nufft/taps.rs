@@ -256,6 +256,7 @@ impl<T: Real> Gather<'_, '_, T> {
             }
         }
     }
+
     #[inline(always)]
     fn gather_gradient<const FUSED: bool, const TAPS: usize>(self) {
         let Self { taps, points, shift, strip, sums } = self;

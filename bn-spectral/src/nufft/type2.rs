@@ -12,8 +12,8 @@ use super::taps::{Gather, GatherGradient};
 use super::transpose::{FromColumns, Scale};
 
 /// Rows of the grid before their transform, from modes: `spectrum` holds, column by column, all
-/// grid rows. `fill` writes the modes ky = −K … K of
-/// column kx = 0 … K (paired) or −K … K (single, by its number from 0).
+/// grid rows. `fill` writes the modes ky = −K … K of column kx = 0 … K (paired) or −K … K (single, by
+/// its number from 0).
 pub(super) fn transform_columns<T: Real>(
     tables: &Tables<T>,
     packing: Packing,

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use crate::jinc_slice;
+use crate::bessel::jinc_slice_alike;
 
 /// Radii whose transforms are computed together.
 const CHUNK: usize = 256;
@@ -34,7 +34,7 @@ impl Annuli {
                 for (x, u) in x.iter_mut().zip(u) {
                     *x = TAU * b * u;
                 }
-                jinc_slice(&x[..u.len()], &mut values[..u.len()]);
+                jinc_slice_alike(&x[..u.len()], &mut values[..u.len()]);
                 for (sum, jinc) in sums.iter_mut().zip(&values) {
                     *sum += height * TAU * b * b * jinc;
                 }

@@ -75,6 +75,8 @@ pub enum TargetError {
 /// for the halves of their neighbourhood each (exact for such a curve, O(Δ²) for a smooth one that
 /// it samples); Gauss quadrature over the band where a smoothed peak differs from 0 and 1.
 ///
+/// The values decide where matched points lie: they have the same bits on every CPU.
+///
 /// ```
 /// use bn_core::Density;
 /// use bn_spectral::{Target, highest_step};
@@ -160,7 +162,7 @@ impl Target {
         }
         let density = Density::new(points);
         let limit = (IMITATED * (n as f64).sqrt()).ceil() as usize;
-        let radial = RadialPower::of(sets, PeriodogramOptions::new(limit))?;
+        let radial = RadialPower::of(sets, PeriodogramOptions::new(limit).portable())?;
         let scale = (points as f64 / n as f64).sqrt();
         let curve = radial.curve().ok_or(TargetError::Sets)?;
         let samples: Vec<_> = curve.iter().map(|(nu, power)| (nu * scale, power)).collect();

@@ -6,7 +6,8 @@ use bn_core::Density;
 use rayon::prelude::*;
 
 use super::annuli::{Annuli, cells, steps_between};
-use crate::{Window, j0_slice};
+use crate::Window;
+use crate::bessel::j0_slice_alike;
 
 /// A curve counts as settled at 1 if its last tenth is this close to it.
 const SETTLED: f64 = 1e-3;
@@ -72,7 +73,7 @@ impl PowerSamples {
         let uncertainty = |&r: &f64| {
             let x: Vec<f64> = self.nu.iter().map(|nu| TAU * nu * r).collect();
             let mut bessel = vec![0.0; x.len()];
-            j0_slice(&x, &mut bessel);
+            j0_slice_alike(&x, &mut bessel);
             let terms = noise.iter().zip(&self.nu).zip(&bessel);
             5.0 * terms.map(|((w, nu), j0)| (w * self.taper(*nu) * j0).powi(2)).sum::<f64>().sqrt()
         };

@@ -19,7 +19,7 @@ const REFERENCE_POINTS: f64 = 4096.0;
 /// [ν₀, ν₀ + width), smoothed along ν by a Gaussian of deviation σ (thesis §5.3.3, where the box is
 /// a Dirac peak; the authors' program uses a box). All in cycles per unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SinglePeak {
     /// ν₀ ≥ 0.
     pub nu0: f64,
@@ -118,7 +118,7 @@ impl SinglePeak {
         }
         let mut g = Annuli::new(&[0.0, from], &[-1.0]).rdf(n, r);
         // The Gaussian is as smooth as 16 Gauss nodes can be asked for over 2σ.
-        let plan = HankelPlan::new(&[from, to], PI / 2.0 * self.sigma, r);
+        let plan = HankelPlan::alike(&[from, to], PI / 2.0 * self.sigma, r);
         for (g, band) in g.iter_mut().zip(plan.transform(|nu| self.power(nu) - 1.0)) {
             *g += band / n;
         }

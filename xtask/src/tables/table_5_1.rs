@@ -17,7 +17,7 @@ pub(super) const SPEC: TableSpec = TableSpec {
 };
 
 /// Digits to which a closed form must agree: the numerical transform promises an error of 1e-12 of
-/// 2π ∫ r |f| dr.
+/// 2π ∫ r |f| dr, and the closed forms have rounding errors of their own.
 const PROMISED: f64 = 11.0;
 /// More than double precision has, for masses up to 400.
 const MOST: f64 = 20.0;
