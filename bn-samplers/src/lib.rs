@@ -77,6 +77,6 @@ pub use sobol::{Scramble, Sobol};
 pub use spectrum_matching::single_peak::SinglePeak;
 pub use spectrum_matching::step::Step;
 pub use spectrum_matching::{
-    Algorithm, Annealing, Force, Gradient, Residual, Spectral, SpectrumMatching, Stage, Weights,
+    Algorithm, Annealing, Force, Gradient, Residual, Spectral, SpectrumMatching, Weights,
 };
 pub use stochastic::Stochastic;

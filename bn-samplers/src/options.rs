@@ -175,6 +175,7 @@ enum Value {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OptionValues {
     values: Vec<(&'static OptionSpec, Option<Value>)>,
+    given: Vec<&'static str>,
 }
 
 impl OptionValues {
@@ -189,6 +190,7 @@ impl OptionValues {
         given: impl IntoIterator<Item = (&'a str, Given<'a>)>,
     ) -> Result<Self, OptionError> {
         let mut values: Vec<_> = specs.iter().map(|spec| (spec, None)).collect();
+        let mut all_given = Vec::new();
         for (name, value) in given {
             let Some((spec, slot)) = values.iter_mut().find(|(spec, _)| spec.name == name) else {
                 return Err(unknown(method, specs, name));
@@ -196,6 +198,7 @@ impl OptionValues {
             if slot.is_some() {
                 return Err(OptionError::Repeated { option: spec.name });
             }
+            all_given.push(spec.name);
             *slot = Some(match value {
                 Given::Text(text) => parse_value(spec, text)?,
                 Given::Points(points) if spec.kind == OptionKind::Points => Value::Points(points),
@@ -211,7 +214,12 @@ impl OptionValues {
                 *slot = Some(parse_value(spec, text)?);
             }
         }
-        Ok(Self { values })
+        Ok(Self { values, given: all_given })
+    }
+
+    /// Whether the option `name` was given, be it with its default value.
+    pub fn is_given(&self, name: &str) -> bool {
+        self.given.contains(&name)
     }
 
     /// Whether the flag `name` is set.

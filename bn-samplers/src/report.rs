@@ -35,6 +35,8 @@ pub enum FigureValue {
     Real(f64),
     /// Whether something holds.
     Holds(bool),
+    /// One of a few words.
+    Word(&'static str),
 }
 
 impl Report {
@@ -87,12 +89,19 @@ impl From<bool> for FigureValue {
     }
 }
 
+impl From<&'static str> for FigureValue {
+    fn from(word: &'static str) -> Self {
+        Self::Word(word)
+    }
+}
+
 impl fmt::Display for FigureValue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Count(count) => count.fmt(f),
             Self::Real(value) => value.fmt(f),
             Self::Holds(holds) => f.write_str(if *holds { "yes" } else { "no" }),
+            Self::Word(word) => f.write_str(word),
         }
     }
 }

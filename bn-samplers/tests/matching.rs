@@ -2,8 +2,8 @@
 
 use bn_core::{DVec2, Density, PointSet, Seed, Unobserved};
 use bn_samplers::{
-    Algorithm, FigureValue, Jittered, Sample, SampleError, Sampler, SinglePeak, SpectrumMatching,
-    Step, Stochastic,
+    Algorithm, FigureValue, Force, Given, Jittered, OptionError, OptionKind, OptionValues, Sample,
+    SampleError, Sampler, SinglePeak, Spectral, SpectrumMatching, Step, Stochastic, find,
 };
 use bn_spectral::{Target, WindowedSpectrum, highest_step, power_below};
 
@@ -129,4 +129,147 @@ fn nothing_upsets_an_algorithm() {
             }
         }
     }
+}
+
+fn from_options(given: &[(&str, &str)]) -> Result<Algorithm, OptionError> {
+    let given = given.iter().map(|&(name, text)| (name, Given::Text(text)));
+    Algorithm::from_options(&OptionValues::parse("step", Algorithm::OPTIONS, given)?)
+}
+
+fn spectral(given: &[(&str, &str)]) -> Spectral {
+    match from_options(given) {
+        Ok(Algorithm::Spectral(spectral)) => spectral,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn options_become_fields() {
+    assert_eq!(spectral(&[]), Spectral::default());
+    let ranges = |given: &[(&str, &str)]| spectral(given).ranges;
+    assert_eq!(ranges(&[]), [1.5, 6.0]);
+    assert_eq!(ranges(&[("stages", "1")]), [6.0]);
+    assert_eq!(ranges(&[("stages", "3")]), [1.5, 3.0, 6.0]);
+    assert_eq!(ranges(&[("range", "3")]), [1.5, 3.0]);
+    assert_eq!(ranges(&[("range", "0.75")]), [0.75, 0.75]);
+    let tuned = spectral(&[("tolerance", "1e-3"), ("weight-exponent", "0"), ("evaluations", "7")]);
+    assert_eq!((tuned.tolerance, tuned.weights.exponent), (Some(1e-3), 0.0));
+    assert_eq!((tuned.evaluations, tuned.iterations), (Some(7), None));
+    assert_eq!(spectral(&[("iterations", "160")]).iterations, Some(160));
+
+    let force = [("algorithm", "force"), ("smoothing", "4"), ("patience", "5"), ("coldest", "0.1")];
+    let want = Force { smoothing: 4.0, patience: 5, coldest: 0.1, ..Force::default() };
+    assert_eq!(from_options(&force), Ok(Algorithm::Force(want)));
+    let cooled = from_options(&[("cooling", "0.5"), ("algorithm", "force")]);
+    assert_eq!(cooled, Ok(Algorithm::Force(Force { cooling: 0.5, ..Force::default() })));
+}
+
+/// Each option is refused, even with its default value, where another algorithm is chosen.
+#[test]
+fn options_of_other_algorithms_are_refused() {
+    let mut refused = 0;
+    for spec in Algorithm::OPTIONS.iter().filter(|spec| spec.name != "algorithm") {
+        let text = match spec.kind {
+            OptionKind::Integer { min, .. } => min.to_string(),
+            OptionKind::Real { max, .. } => max.to_string(),
+            other => panic!("{other:?}"),
+        };
+        for algorithm in Algorithm::NAMES {
+            let made = from_options(&[("algorithm", algorithm), (spec.name, &text)]);
+            assert_eq!(made.is_ok(), Algorithm::takes(algorithm, spec.name), "{}", spec.name);
+            let Err(error) = made else { continue };
+            refused += 1;
+            let message = error.to_string();
+            assert!(message.starts_with(&format!("--{}: it belongs to", spec.name)), "{message}");
+            assert!(message.contains(algorithm), "{message}");
+            // The help says whose they are.
+            let owner = Algorithm::NAMES.iter().find(|name| Algorithm::takes(name, spec.name));
+            assert!(spec.help.starts_with(owner.expect("someone's")), "{}", spec.help);
+        }
+    }
+    assert_eq!(refused, 9 * 3);
+    let step = find("step").expect("known");
+    let error = step.with_options([("smoothing", "8")]).expect_err("force's");
+    assert_eq!(error.to_string(), "--smoothing: it belongs to --algorithm force, not to spectral");
+}
+
+/// What ends a search is told, and is what the options say.
+#[test]
+fn searches_end_as_they_are_told_to() {
+    let n = 256;
+    let run = |target: &Target, algorithm: Algorithm| {
+        let matching = SpectrumMatching::new(target.clone(), algorithm);
+        matching.sample(n, Seed::new(2), &Unobserved).expect("possible")
+    };
+    let ended = |sample: &Sample, why: &'static str, converged: bool| {
+        assert_eq!(sample.report.get("ended_by"), Some(why.into()), "{:?}", sample.report);
+        assert_eq!(sample.report.get("converged"), Some(converged.into()), "{:?}", sample.report);
+    };
+    let iterations = |sample: &Sample| match sample.report.get("iterations") {
+        Some(FigureValue::Count(count)) => count,
+        other => panic!("{other:?}"),
+    };
+    ended(&run(&step(n), Algorithm::default()), "tolerance", true);
+    let mut before = 0;
+    for tolerance in ["1e-1", "1e-2", "1e-3"] {
+        let sample = run(&step(n), Algorithm::Spectral(spectral(&[("tolerance", tolerance)])));
+        ended(&sample, "tolerance", true);
+        let bound: f64 = tolerance.parse().expect("a number");
+        assert!(figure(&sample, "residual") <= 1.01 * bound, "{tolerance}: {:?}", sample.report);
+        assert!(iterations(&sample) > before, "{tolerance}");
+        before = iterations(&sample);
+    }
+    let few = run(&step(n), Algorithm::Spectral(spectral(&[("evaluations", "5")])));
+    ended(&few, "evaluations", false);
+    // A line search that has begun is brought to its end.
+    assert!((10..30).contains(&iterations(&few)), "{:?}", few.report);
+    let peak =
+        Target::single_peak(Density::new(n), bn_spectral::SinglePeak::thesis(Density::new(n)));
+    let long = spectral(&[("evaluations", "3000")]);
+    ended(&run(&peak.expect("valid"), Algorithm::Spectral(long)), "stalled", false);
+    let flat = Target::step(Density::new(n), 0.0).expect("valid");
+    let cold = from_options(&[("algorithm", "force"), ("coldest", "0.5"), ("patience", "2")]);
+    ended(&run(&flat, cold.expect("force's")), "temperature", true);
+    for name in ["force", "gradient", "annealing"] {
+        let algorithm = Algorithm::named(name).expect("listed").with_iterations(3);
+        ended(&run(&step(n), algorithm), "iterations", false);
+    }
+}
+
+/// Whatever the options' ranges allow ends in points, and what they don't in an error.
+#[test]
+fn fields_out_of_range_are_refused() {
+    let n = 16;
+    let run = |algorithm: Algorithm| {
+        SpectrumMatching::new(step(n), algorithm).sample(n, Seed::new(1), &Unobserved)
+    };
+    for owner in ["spectral", "force"] {
+        for spec in Algorithm::OPTIONS.iter().filter(|spec| Algorithm::takes(owner, spec.name)) {
+            let ends = match spec.kind {
+                OptionKind::Integer { min, max } => [min.to_string(), max.to_string()],
+                OptionKind::Real { min, max } => [min.to_string(), max.to_string()],
+                _ => continue,
+            };
+            for text in ends {
+                let given = [("algorithm", owner), (spec.name, &*text)];
+                let algorithm = from_options(&given).expect("in range");
+                assert_eq!(run(algorithm).expect("possible").points.len(), n);
+            }
+        }
+    }
+    for wrong in [-1.0, f64::NAN, f64::INFINITY, 1e3] {
+        let mut spectral = Spectral::default();
+        spectral.weights.exponent = wrong;
+        assert!(run(Algorithm::Spectral(spectral)).is_err());
+        let mut spectral = Spectral::default();
+        spectral.ranges[0] = wrong;
+        assert!(run(Algorithm::Spectral(spectral)).is_err());
+        assert!(run(Algorithm::Force(Force { cooling: wrong, ..Force::default() })).is_err());
+        assert!(run(Algorithm::Force(Force { coldest: wrong, ..Force::default() })).is_err());
+    }
+    assert!(
+        run(Algorithm::Spectral(Spectral { tolerance: Some(-1.0), ..Spectral::default() }))
+            .is_err()
+    );
+    assert!(run(Algorithm::Force(Force { smoothing: f64::NAN, ..Force::default() })).is_err());
 }

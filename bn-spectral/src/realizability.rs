@@ -12,8 +12,11 @@ const ROUNDING: f64 = 1e-9;
 const REACH: f64 = 14.0;
 /// … in steps of 1/√n over this, or finer where the spectrum reaches beyond 10·√n.
 const STEPS: f64 = 100.0;
-/// The most radii.
+/// The most radii in such steps …
 const MOST_RADII: f64 = 40_000.0;
+/// … and those over the rest, if they don't reach: of spectra that reach absurdly far, whose g is all
+/// but decided near 0.
+const FAR_RADII: u32 = 500;
 /// Below this power a frequency counts as empty.
 const EMPTY: f64 = 1e-3;
 
@@ -38,11 +41,12 @@ pub struct Realizability {
     pub min_g: f64,
     /// … and where, in unit lengths.
     pub at_r: f64,
-    /// Further conditions that are known to be necessary and don't hold, or nearly don't.
+    /// Further conditions that are known to be necessary and don't hold, or nearly don't; curves that
+    /// end too early.
     pub warnings: Vec<Warning>,
 }
 
-/// A necessary condition beyond P ≥ 0 and g ≥ 0.
+/// A necessary condition beyond P ≥ 0 and g ≥ 0 that doesn't hold, or what else makes the verdict doubtful.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case", tag = "condition"))]
@@ -75,6 +79,21 @@ pub enum Warning {
         /// √(2n/√3).
         limit: f64,
     },
+    /// A curve of P ends before it has settled at 1. It counts as 1 beyond: the jump is part of what is
+    /// checked.
+    UnsettledPower {
+        /// The last frequency, in cycles per unit.
+        end: f64,
+        /// The largest |P − 1| in the last tenth of the samples.
+        deviation: f64,
+    },
+    /// The same of a curve of g.
+    UnsettledRdf {
+        /// The last distance, in unit lengths.
+        end: f64,
+        /// The largest |g − 1| in the last tenth of the samples.
+        deviation: f64,
+    },
 }
 
 impl std::fmt::Display for Warning {
@@ -94,6 +113,16 @@ impl std::fmt::Display for Warning {
                 "no power below {edge:.3} cycles per unit, but even the hexagonal lattice has its \
                  first at {limit:.3}"
             ),
+            Self::UnsettledPower { end, deviation } => write!(
+                f,
+                "the power is still {deviation:.4} away from 1 where its curve ends, at {end:.3} cycles \
+                 per unit; it counts as 1 beyond, and the jump is judged and matched with the rest"
+            ),
+            Self::UnsettledRdf { end, deviation } => write!(
+                f,
+                "the RDF is still {deviation:.4} away from 1 where its curve ends, at the distance \
+                 {end:.5}; it counts as 1 beyond, and the jump is judged and matched with the rest"
+            ),
         }
     }
 }
@@ -103,7 +132,11 @@ impl Realizability {
     pub fn of(target: &Target) -> Self {
         let (min_power, at_nu) = least_power(target);
         let (min_g, at_r, tolerance) = least_g(target);
-        let warnings = empty_region(target).into_iter().chain(number_variance(target)).collect();
+        let warnings = empty_region(target)
+            .into_iter()
+            .chain(number_variance(target))
+            .chain(unsettled(target))
+            .collect();
         Self {
             realizable: min_power >= -ROUNDING && min_g >= -ROUNDING - tolerance,
             min_power,
@@ -112,6 +145,14 @@ impl Realizability {
             at_r,
             warnings,
         }
+    }
+
+    /// Whether nothing is known that stands in the way of point sets with this spectrum.
+    pub fn is_unobjectionable(&self) -> bool {
+        let objects = |warning: &Warning| {
+            !matches!(warning, Warning::UnsettledPower { .. } | Warning::UnsettledRdf { .. })
+        };
+        self.realizable && !self.warnings.iter().any(objects)
     }
 
     /// Why the spectrum is not realizable, in words; none if it is.
@@ -141,9 +182,13 @@ fn least_g(target: &Target) -> (f64, f64, f64) {
     let root = target.density().points_per_unit_area().sqrt();
     let finest = 1.0 / (STEPS * root).max(10.0 * target.end());
     let range = (REACH / root).max(0.5);
-    let count = (range / finest).min(MOST_RADII);
-    let step = range / count;
-    let radii: Vec<f64> = (0..=count as usize).map(|i| i as f64 * step).collect();
+    let count = (range / finest).min(MOST_RADII) as u32;
+    let reached = f64::from(count) * finest;
+    let mut radii: Vec<f64> = (0..=count).map(|i| f64::from(i) * finest).collect();
+    if range - reached > finest {
+        let far = |i: u32| reached + (range - reached) * f64::from(i) / f64::from(FAR_RADII);
+        radii.extend((1..=FAR_RADII).map(far));
+    }
     let margins = |radii: &[f64]| -> (f64, f64, f64) {
         let (g, error) = (target.rdf(radii), target.rdf_uncertainty(radii));
         let all = radii.iter().zip(&g).zip(&error).map(|((&r, &g), &error)| (g, r, error));
@@ -151,7 +196,7 @@ fn least_g(target: &Target) -> (f64, f64, f64) {
     };
     let coarse = margins(&radii);
     let around: Vec<f64> =
-        (-20..=20).map(|i| (coarse.1 + step * f64::from(i) / 20.0).max(0.0)).collect();
+        (-20..=20).map(|i| (coarse.1 + finest * f64::from(i) / 20.0).max(0.0)).collect();
     let fine = margins(&around);
     if fine.0 + fine.2 < coarse.0 + coarse.2 { fine } else { coarse }
 }
@@ -171,6 +216,17 @@ fn empty_region(target: &Target) -> Option<Warning> {
     } else {
         None
     }
+}
+
+/// A curve that stops too early.
+fn unsettled(target: &Target) -> Option<Warning> {
+    target.unsettled().map(|(is_rdf, end, deviation)| {
+        if is_rdf {
+            Warning::UnsettledRdf { end, deviation }
+        } else {
+            Warning::UnsettledPower { end, deviation }
+        }
+    })
 }
 
 /// The disk whose number variance is the farthest below its bound, if any is.

@@ -122,13 +122,17 @@ fn random_annuli_agree_with_brute_force() {
         let close = 1e-7;
         let ends = |k: usize| [(edges[k] + close, values[k]), (edges[k + 1] - close, values[k])];
         let mut samples: Vec<(f64, f64)> = (0..rings).flat_map(ends).collect();
-        // Settled at 1, or the end would be tapered.
-        samples.extend([(edges[rings] + close, 1.0), (edges[rings] + 1.0, 1.0)]);
+        // Every other curve ends with a value that is not 1, which it has beyond.
+        if values.len().is_multiple_of(2) {
+            samples.extend([(edges[rings] + close, 1.0), (edges[rings] + 1.0, 1.0)]);
+        }
         let verdict = Realizability::of(&Target::power_curve(density(), &samples).expect("valid"));
         let least = (1..20_000).map(|i| annuli_rdf(&edges, &values, f64::from(i) * 5e-6));
         let least = least.fold(f64::INFINITY, f64::min);
         assert!((verdict.min_g - least).abs() < 1e-4, "{edges:?} {values:?}: {verdict:?}, {least}");
         assert_eq!(verdict.realizable, least > -1e-9, "{edges:?} {values:?}: {verdict:?}");
+        let is_unsettled = |w: &Warning| matches!(w, Warning::UnsettledPower { .. });
+        assert_eq!(verdict.warnings.iter().any(is_unsettled), values.len() % 2 == 1);
         if verdict.realizable { yes += 1 } else { no += 1 }
     }
     assert!(yes > 5 && no > 5, "{yes} realizable, {no} not: nothing was tested");
@@ -215,4 +219,34 @@ fn the_feasible_region_ends_where_the_step_does() {
     });
     assert!(margins[0] >= -1e-9 && margins[1] < 0.0, "{margins:?}");
     assert!(feasible_region(&[1.0], &[1.0], |_, _| None)[0].is_nan());
+}
+
+/// What a curve says holds as far as it goes, and 1 beyond: no end is rounded off.
+#[test]
+fn curves_that_end_early_are_judged_as_they_are() {
+    let n = N as f64;
+    // P = 0 up to the end is a step there, realizable up to √(n/π).
+    for (factor, want) in [(0.99, true), (1.01, false)] {
+        let end = factor * highest_step(n);
+        let target = Target::power_curve(density(), &[(0.0, 0.0), (end, 0.0)]).expect("valid");
+        let verdict = Realizability::of(&target);
+        assert_eq!(verdict.realizable, want, "{verdict:?}");
+        assert!((verdict.min_g - (1.0 - factor * factor)).abs() < 1e-6, "{verdict:?}");
+        assert!(verdict.warnings.contains(&Warning::UnsettledPower { end, deviation: 1.0 }));
+        assert_eq!(verdict.is_unobjectionable(), want);
+        assert_eq!((target.power(0.999 * end), target.power(1.001 * end)), (0.0, 1.0));
+    }
+    // g = 0 up to the end is a gap of hard disks that nothing makes up for: P = 1 − 2n·A·jinc, A the
+    // area of the disk, falls to 1 − nA at 0.
+    for (share, want) in [(0.99_f64, true), (1.01, false)] {
+        let end = (share / (n * std::f64::consts::PI)).sqrt();
+        let samples: Vec<_> = (0..=2000).map(|i| (f64::from(i) / 2000.0 * end, 0.0)).collect();
+        let verdict = Realizability::of(&Target::rdf_curve(density(), &samples).expect("valid"));
+        assert_eq!(verdict.realizable, want, "{verdict:?}");
+        assert!((verdict.min_power - (1.0 - share)).abs() < 1e-3, "{verdict:?}");
+        assert!(verdict.warnings.contains(&Warning::UnsettledRdf { end, deviation: 1.0 }));
+    }
+    let settled = [(0.0, 0.0), (30.0, 0.0), (40.0, 1.0), (50.0, 1.0)];
+    let settled = Realizability::of(&Target::power_curve(density(), &settled).expect("valid"));
+    assert!(settled.is_unobjectionable() && settled.warnings.is_empty(), "{settled:?}");
 }

@@ -6,16 +6,13 @@ use std::time::Instant;
 use anyhow::anyhow;
 use bn_core::io::Format;
 use bn_core::{Observer, PointSet, Seed, Unobserved};
-use bn_samplers::{
-    CountRule, DefaultValue, METHODS, Method, OptionKind, OptionSpec, Report, Sample, Sampler,
-};
-use clap::builder::ValueRange;
-use clap::{Arg, ArgAction, ArgMatches, Args, Command};
+use bn_samplers::{CountRule, METHODS, Method, Report, Sample, Sampler};
+use clap::{ArgMatches, Args, Command};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
 use super::Global;
-use super::method_values::given_values;
+use super::method_values::{given_options, given_values, option_argument, option_value};
 use crate::progress_bar::Bar;
 use crate::{Failure, Outcome, output, output_points};
 
@@ -77,44 +74,13 @@ fn method_command(method: &'static Method) -> Command {
         .args(method.options.iter().map(option_argument))
 }
 
-fn option_argument(spec: &'static OptionSpec) -> Arg {
-    let unit = if spec.unit.is_empty() { String::new() } else { format!(" [{}]", spec.unit) };
-    let default = format!("default: {}", spec.default);
-    let argument = Arg::new(spec.name).long(spec.name).help_heading("Options of the method");
-    match spec.kind {
-        // `--flag` alone is true; `--flag=false` is possible too.
-        OptionKind::Flag => argument
-            .num_args(ValueRange::from(0..=1))
-            .require_equals(true)
-            .default_missing_value("true")
-            .help(format!("{}{unit}", spec.help)),
-        _ => argument
-            .num_args(1)
-            .allow_negative_numbers(true)
-            .value_name(value_name(spec.kind))
-            .help(format!("{}{unit}: {} ({default})", spec.help, spec.kind)),
-    }
-    .action(ArgAction::Set)
-}
-
-fn value_name(kind: OptionKind) -> &'static str {
-    match kind {
-        OptionKind::Integer { .. } => "N",
-        OptionKind::Real { .. } => "X",
-        OptionKind::Choice(_) => "WORD",
-        OptionKind::Flag | OptionKind::Text => "TEXT",
-        OptionKind::Points => "FILE",
-        OptionKind::Density => "IMAGE|FORMULA",
-    }
-}
-
 pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
     let Some((name, matches)) = matches.subcommand() else {
         unreachable!("clap requires a method");
     };
     let method = bn_samplers::find(name).map_err(Failure::usage)?;
     let args: Generate = super::parsed(matches)?;
-    let options = given_options(method, matches);
+    let options = given_options(method.options, matches);
     let given = given_values(method, &options)?;
     let sampler = method.with_values(given).map_err(Failure::usage)?;
     if u64::from(args.n) * u64::from(args.sets) > MAX_TOTAL {
@@ -180,16 +146,11 @@ fn unconverged(reports: &[Report]) -> Option<String> {
         Some(FigureValue::Real(residual)) => format!(", residual {residual:.3e}"),
         _ => String::new(),
     };
-    Some(format!("stopped{after} without having converged{residual}{of}"))
-}
-
-/// The method's options that were typed, as text.
-fn given_options<'a>(
-    method: &'static Method,
-    matches: &'a ArgMatches,
-) -> Vec<(&'static str, &'a str)> {
-    let typed = |spec: &OptionSpec| matches.get_one::<String>(spec.name).map(String::as_str);
-    method.options.iter().filter_map(|spec| Some((spec.name, typed(spec)?))).collect()
+    let why = match figure(first, "ended_by") {
+        Some(FigureValue::Word(word)) => format!(" ({word})"),
+        _ => String::new(),
+    };
+    Some(format!("stopped{after} without having converged{why}{residual}{of}"))
 }
 
 /// Refuses `.npy` for sets that will differ in size, before they are made.
@@ -275,28 +236,13 @@ fn account(
     })
 }
 
-/// The option as given or its default; null where the method chooses by itself.
-fn option_value(spec: &OptionSpec, given: &[(&str, &str)]) -> Value {
-    let text = given.iter().find(|(name, _)| *name == spec.name).map(|(_, text)| text.trim());
-    let text = match (text, spec.default) {
-        (Some(text), _) | (None, DefaultValue::Value(text)) => text,
-        (None, DefaultValue::Absent(_)) => return Value::Null,
-    };
-    match spec.kind {
-        // The sampler has been built from this text, so it parses.
-        OptionKind::Flag | OptionKind::Integer { .. } | OptionKind::Real { .. } => {
-            text.parse().unwrap_or_else(|_| json!(text.parse::<f64>().ok()))
-        }
-        _ => json!(text),
-    }
-}
-
 fn figures(report: &Report) -> Map<String, Value> {
     use bn_samplers::FigureValue;
     let value = |value| match value {
         FigureValue::Count(count) => json!(count),
         FigureValue::Real(real) => json!(real),
         FigureValue::Holds(holds) => json!(holds),
+        FigureValue::Word(word) => json!(word),
     };
     report.figures.iter().map(|figure| (figure.name.to_owned(), value(figure.value))).collect()
 }

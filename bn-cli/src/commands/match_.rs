@@ -6,13 +6,15 @@ use std::time::Instant;
 use anyhow::anyhow;
 use bn_core::io::Format;
 use bn_core::{PointSet, Seed, Unobserved};
-use bn_samplers::{Algorithm, FigureValue, Report, Sample, Sampler as _, SpectrumMatching};
-use clap::builder::PossibleValuesParser;
-use clap::{Args, Command};
+use bn_samplers::{
+    Algorithm, FigureValue, Given, OptionValues, Report, Sample, Sampler as _, SpectrumMatching,
+};
+use clap::{ArgMatches, Args, Command};
 use rayon::prelude::*;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::Global;
+use super::method_values::{given_options, option_argument, option_value};
 use super::target::{TargetArgs, Wanted};
 use crate::progress_bar::Bar;
 use crate::{Failure, Outcome, input, output, output_points};
@@ -37,13 +39,6 @@ pub(super) struct Match {
     /// Format of the output (default: by the file's extension; txt or dat on standard output)
     #[arg(long, value_name = "FORMAT")]
     format: Option<Format>,
-    /// How to come near the spectrum
-    #[arg(long, value_name = "NAME", default_value = Algorithm::NAMES[0],
-          value_parser = PossibleValuesParser::new(Algorithm::NAMES))]
-    algorithm: String,
-    /// The most iterations (default: until it stops paying)
-    #[arg(long, value_name = "N")]
-    iterations: Option<u32>,
     /// Go on from these points instead of random ones
     #[arg(long, value_name = "FILE")]
     start: Option<PathBuf>,
@@ -57,6 +52,9 @@ pub(super) struct Match {
 
 pub(super) fn command() -> Command {
     Match::augment_args(Command::new("match"))
+        .args(Algorithm::OPTIONS.iter().map(|spec| {
+            option_argument(spec).help_heading("Options of the algorithms")
+        }))
         .about("Make patterns that have a given spectrum")
         .long_about(
             "Make patterns that have a given spectrum. Targets that are known to be unrealizable are \
@@ -71,7 +69,12 @@ pub(super) fn command() -> Command {
         )
 }
 
-pub(super) fn run(args: &Match, global: &Global) -> Outcome {
+pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
+    let args: &Match = &super::parsed(matches)?;
+    let options = given_options(Algorithm::OPTIONS, matches);
+    let given = options.iter().map(|&(name, text)| (name, Given::Text(text)));
+    let values = OptionValues::parse("match", Algorithm::OPTIONS, given).map_err(Failure::usage)?;
+    let algorithm = Algorithm::from_options(&values).map_err(Failure::usage)?;
     if args.json && args.output == Path::new("-") {
         return Err(Failure::misuse(
             "--json needs standard output for itself; name a file with -o",
@@ -81,27 +84,62 @@ pub(super) fn run(args: &Match, global: &Global) -> Outcome {
     let first = args.start.as_deref().map(|file| start(file, args.n)).transpose()?;
     let n = args.n.or(first.as_ref().map(|points| points.len() as u32));
     let wanted = args.target.target(n, None)?;
-    if let Some(objection) = wanted.objection() {
+    let (objection, warnings) = wanted.objection();
+    let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    if let Some(objection) = objection {
         if !args.best_effort && !wanted.is_default {
+            let all: Vec<&str> = [&objection].into_iter().chain(&warnings).map(|s| &**s).collect();
             return Err(Failure::misuse(format!(
-                "{}: {objection}; --best-effort comes as near as possible",
-                wanted.name
+                "{}: {}; --best-effort comes as near as possible",
+                wanted.name,
+                all.join("; ")
             )));
         }
         global.remark(format!("{}: {objection}; coming as near as possible", wanted.name));
     }
+    for warning in &warnings {
+        global.remark(format!("warning: {warning}"));
+    }
     let start = Instant::now();
-    let samples = args.samples(&wanted, first, global)?;
+    let mut matching = SpectrumMatching::new(wanted.target.clone(), algorithm);
+    matching.start = first;
+    let samples = args.samples(&matching, global)?;
     let seconds = start.elapsed().as_secs_f64();
     let (sets, reports): (Vec<PointSet>, Vec<Report>) =
         samples.into_iter().map(|sample| (sample.points, sample.report)).unzip();
     output_points::write(&args.output, args.format, &sets)?;
-    let account = args.account(&wanted, &reports, seconds);
     if args.json {
+        let account = args.account(&wanted, &warnings, &options, &reports, seconds);
         return output::write_stdout(|w| Ok(writeln!(w, "{account:#}")?));
     }
-    global.remark(format!("residual {:.2e}", real(&account["residual"])));
+    global.remark(summary(&reports));
     Ok(())
+}
+
+/// How near the sets came, and why no nearer.
+fn summary(reports: &[Report]) -> String {
+    let mut ends: Vec<&str> = words(reports, "ended_by").collect();
+    ends.sort_unstable();
+    ends.dedup();
+    let residual = numbers(reports, "residual").fold(0.0, f64::max);
+    format!("residual {residual:.2e}, ended by {}", ends.join(" or "))
+}
+
+/// The numbers called `name`, of those that have it.
+fn numbers(reports: &[Report], name: &str) -> impl Iterator<Item = f64> {
+    reports.iter().filter_map(move |report| match report.get(name)? {
+        FigureValue::Real(real) => Some(real),
+        FigureValue::Count(count) => Some(count as f64),
+        FigureValue::Holds(_) | FigureValue::Word(_) => None,
+    })
+}
+
+/// The words called `name`, likewise.
+fn words(reports: &[Report], name: &str) -> impl Iterator<Item = &'static str> {
+    reports.iter().filter_map(move |report| match report.get(name)? {
+        FigureValue::Word(word) => Some(word),
+        _ => None,
+    })
 }
 
 /// The points to go on from, as many as are wanted.
@@ -117,30 +155,9 @@ fn start(file: &Path, n: Option<u32>) -> Outcome<PointSet> {
     }
 }
 
-fn real(value: &Value) -> f64 {
-    value.as_f64().unwrap_or(f64::NAN)
-}
-
 impl Match {
-    fn matching(&self, wanted: &Wanted, start: Option<PointSet>) -> SpectrumMatching {
-        let algorithm = Algorithm::named(&self.algorithm).unwrap_or_default();
-        let algorithm = match self.iterations {
-            Some(iterations) => algorithm.with_iterations(iterations),
-            None => algorithm,
-        };
-        let mut matching = SpectrumMatching::new(wanted.target.clone(), algorithm);
-        matching.start = start;
-        matching
-    }
-
-    fn samples(
-        &self,
-        wanted: &Wanted,
-        start: Option<PointSet>,
-        global: &Global,
-    ) -> Outcome<Vec<Sample>> {
-        let matching = self.matching(wanted, start);
-        let n = wanted.target.density().points_per_unit_area() as usize;
+    fn samples(&self, matching: &SpectrumMatching, global: &Global) -> Outcome<Vec<Sample>> {
+        let n = matching.target.density().points_per_unit_area() as usize;
         let bar = Bar::new(global.quiet);
         let failure = |error: bn_samplers::SampleError| {
             let usage = error.is_usage();
@@ -160,30 +177,48 @@ impl Match {
     }
 
     /// The JSON account; `iterations` is summed over the sets, residuals are the largest.
-    fn account(&self, wanted: &Wanted, reports: &[Report], seconds: f64) -> Value {
-        let each = |name: &str| -> Vec<f64> {
-            let value = |report: &Report| match report.get(name)? {
-                FigureValue::Real(real) => Some(real),
-                FigureValue::Count(count) => Some(count as f64),
-                FigureValue::Holds(holds) => Some(f64::from(u8::from(holds))),
-            };
-            reports.iter().filter_map(value).collect()
-        };
-        let largest = |name: &str| each(name).into_iter().reduce(f64::max);
+    fn account(
+        &self,
+        wanted: &Wanted,
+        warnings: &[String],
+        given: &[(&str, &str)],
+        reports: &[Report],
+        seconds: f64,
+    ) -> Value {
+        let largest = |name: &str| numbers(reports, name).reduce(f64::max);
+        let converged = |report: &Report| report.get("converged") == Some(true.into());
         json!({
             "target": wanted.name,
             "n": wanted.target.density().points_per_unit_area() as u64,
             "seed": self.seed,
             "sets": self.sets,
-            "options": {"algorithm": self.algorithm, "iterations": self.iterations,
-                        "best_effort": self.best_effort, "start": self.start,
-                        "nu0": self.target.nu0, "peak": self.target.peak, "sigma": self.target.sigma},
-            "iterations": each("iterations").iter().sum::<f64>() as u64,
+            "options": self.options(given),
+            "warnings": warnings,
+            "iterations": numbers(reports, "iterations").sum::<f64>() as u64,
             "residual": largest("residual"),
             "empty_power": largest("empty_power"),
-            "converged": each("converged").iter().all(|&holds| holds == 1.0),
-            "residuals": each("residual"),
+            "converged": reports.iter().all(converged),
+            "ended_by": words(reports, "ended_by").collect::<Vec<_>>(),
+            "residuals": numbers(reports, "residual").collect::<Vec<_>>(),
             "seconds": seconds,
         })
+    }
+
+    /// All options as they were given or are by default; null where the algorithm doesn't take them or
+    /// chooses by itself.
+    fn options(&self, given: &[(&str, &str)]) -> Map<String, Value> {
+        let own = json!({
+            "best_effort": self.best_effort, "start": self.start,
+            "nu0": self.target.nu0, "peak": self.target.peak, "sigma": self.target.sigma,
+        });
+        let named = given.iter().find(|(name, _)| *name == "algorithm");
+        let algorithm = named.map_or(Algorithm::NAMES[0], |(_, text)| text);
+        let tuned = Algorithm::OPTIONS.iter().map(|spec| {
+            let takes = Algorithm::takes(algorithm, spec.name);
+            let value = if takes { option_value(spec, given) } else { Value::Null };
+            (spec.name.replace('-', "_"), value)
+        });
+        let own = own.as_object().cloned().unwrap_or_default();
+        tuned.chain(own).collect()
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bn_core::io::ReadOptions;
 use bn_core::{Density, PointSet};
-use bn_spectral::{Realizability, SinglePeak, Target, highest_step};
+use bn_spectral::{Realizability, SinglePeak, Target, Warning, highest_step};
 use clap::Args;
 
 use crate::input::Stdin;
@@ -130,20 +130,23 @@ fn imitated(sets: &[PointSet], name: String, n: Option<u32>) -> Outcome<Wanted> 
 const FEWEST_MODES: f64 = 12.0;
 
 impl Wanted {
-    /// Why nobody should try to match it.
-    pub(super) fn objection(&self) -> Option<String> {
-        use bn_spectral::Warning::BeyondHexagonal;
+    /// Why nobody should try to match it, and what else is doubtful about it.
+    pub(super) fn objection(&self) -> (Option<String>, Vec<Warning>) {
         let end = self.target.end();
         let modes = std::f64::consts::PI * end * end;
         let n = self.target.density().points_per_unit_area();
         if modes < FEWEST_MODES {
-            return Some(format!(
+            let objection = format!(
                 "{n} points are too few: the target differs from 1 only below {end:.3} cycles per \
                  unit, where the torus has about {modes:.0} modes"
-            ));
+            );
+            return (Some(objection), Vec::new());
         }
         let verdict = Realizability::of(&self.target);
-        let beyond = verdict.warnings.iter().find(|w| matches!(w, BeyondHexagonal { .. }));
-        beyond.map(ToString::to_string).or_else(|| verdict.reason())
+        let reason = verdict.reason();
+        let is_beyond = |warning: &mut Warning| matches!(warning, Warning::BeyondHexagonal { .. });
+        let mut warnings = verdict.warnings;
+        let beyond = warnings.extract_if(.., is_beyond).next();
+        (beyond.map(|warning| warning.to_string()).or(reason), warnings)
     }
 }

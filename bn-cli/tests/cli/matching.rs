@@ -95,6 +95,48 @@ fn curves_come_by_pipe_too() {
     folder.bn_with("match --target -", b"", &[]).refused(2, &["standard input"]);
 }
 
+/// The options of an algorithm are those of the method in the registry, and are accounted for.
+#[test]
+fn algorithms_are_tuned_by_options() {
+    let folder = Folder::new();
+    let tuned = "-n 128 --range 3 --stages 3 --evaluations 20 --weight-exponent 1";
+    let matched = folder.bn(&format!("match --target step {tuned}")).done();
+    assert!(matched.stdout == folder.bn(&format!("generate step {tuned}")).done().stdout);
+    assert!(matched.stdout != folder.bn("match --target step -n 128").done().stdout);
+    assert!(matched.stderr.contains("ended by"), "{}", matched.stderr);
+    let account = folder.bn(&format!("match --target step {tuned} -o a.txt --json")).done().json();
+    let options = &account["options"];
+    assert_eq!((number(options, "range"), number(options, "stages")), (3.0, 3.0));
+    assert_eq!((number(options, "evaluations"), number(options, "weight_exponent")), (20.0, 1.0));
+    assert!(options["tolerance"].is_null() && options["smoothing"].is_null());
+
+    let words = "match --target step -n 128 --tolerance 0.02 --sets 2 -o a.npy --json";
+    let account = folder.bn(words).done().json();
+    assert!(number(&account, "residual") <= 0.02, "{account}");
+    assert_eq!(account["ended_by"], serde_json::json!(["tolerance", "tolerance"]));
+    assert_eq!(account["converged"], true);
+
+    let words = "match --target step -n 64 --algorithm force --patience 3 --iterations 9 -o f.txt";
+    let account = folder.bn(&format!("{words} --json")).done().json();
+    assert_eq!(
+        (&account["options"]["patience"], &account["options"]["range"]),
+        (&3.into(), &Value::Null)
+    );
+    assert_eq!(account["ended_by"], serde_json::json!(["iterations"]));
+
+    for (words, reason) in [
+        ("--algorithm force --range 3", "--range: it belongs to --algorithm spectral"),
+        ("--algorithm annealing --tolerance 0.1", "--tolerance: it belongs to"),
+        ("--cooling 0.5", "--cooling: it belongs to --algorithm force, not to spectral"),
+        ("--range 0", "--range is \"0\", but must be a number from 0.1 to 16"),
+        ("--stages 2.5", "--stages"),
+        ("--tolerance nan", "--tolerance"),
+    ] {
+        folder.bn(&format!("match --target step -n 64 {words} -o never.txt")).refused(2, &[reason]);
+        folder.bn(&format!("generate step -n 64 {words} -o never.txt")).refused(2, &[reason]);
+    }
+}
+
 /// Named targets with default parameters are made however near they can be; what a user asks for
 /// is refused if it can't be had.
 #[test]
@@ -147,6 +189,35 @@ fn best_effort_comes_near_and_says_how_near() {
     // The named targets go as near as they can unasked.
     let finished = folder.bn("match --target single-peak -n 256 -o p.txt").done();
     assert!(finished.stderr.contains("as near as possible"), "{}", finished.stderr);
+}
+
+/// What a curve says is judged and matched as it is, and 1 beyond its end; that is told.
+#[test]
+fn curves_that_end_early_are_told_of() {
+    let folder = Folder::new();
+    // Steps at 0.99 and 1.01 of √(256/π) = 9.027, of which the curves have only the lower side.
+    folder.file("low.csv", "nu,power\n0,0\n8.937,0\n");
+    folder.file("high.csv", "nu,power\n0,0\n9.117,0\n");
+    let account = folder.bn("match --target low.csv -n 256 -o a.txt --json").done();
+    assert!(
+        account.stderr.contains("warning: the power is still 1.0000 away"),
+        "{}",
+        account.stderr
+    );
+    let account = account.json();
+    assert!(account["warnings"][0].as_str().unwrap().contains("at 8.937 cycles"), "{account}");
+    assert!(number(&account, "residual") < 0.01 && number(&account, "empty_power") < 1e-4);
+    let reason = ["the RDF would be -0.0", "the power is still", "counts as 1 beyond"];
+    folder.bn("match --target high.csv -n 256 -o b.txt").refused(2, &reason);
+    for (file, want) in [("low.csv", true), ("high.csv", false)] {
+        let verdict = folder.bn(&format!("realize {file} -n 256 --json")).done().json();
+        assert_eq!(verdict["realizable"], want, "{verdict}");
+        let warning = verdict["warnings"][0].as_str().unwrap();
+        assert!(warning.contains("counts as 1 beyond"), "{warning}");
+    }
+    folder.file("settled.csv", "nu,power\n0,0\n8.9,0\n8.91,1\n9,1\n");
+    let account = folder.bn("match --target settled.csv -n 256 -o a.txt --json").done().json();
+    assert_eq!(account["warnings"], serde_json::json!([]));
 }
 
 /// The curves that `analyze` writes are targets, and lead back to themselves.

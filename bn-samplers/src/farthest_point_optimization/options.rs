@@ -31,7 +31,9 @@ pub(crate) const METHOD: Method = Method {
             name: "until",
             kind: OptionKind::Choice(&["spacing", "converged"]),
             default: DefaultValue::Value("spacing"),
-            help: "stop when --d-min is reached, or only when no point moves by more than 1e-6 d_hex",
+            help: "stop when --d-min is reached, or only when no point moves by more than 1e-6 d_hex: \
+                   4096 random points then have a d_min of 0.930 to 0.933 by the variants hybrid and \
+                   constrained, of 0.929 to 0.931 by global and local, which jam a little earlier",
             unit: "",
         },
         OptionSpec {

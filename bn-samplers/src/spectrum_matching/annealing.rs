@@ -4,7 +4,7 @@ use bn_core::{Curve, DVec2, Observer, PointSet, Progress, Seed, torus};
 use bn_spectral::{PairHistogram, Target};
 use rand::RngExt as _;
 
-use super::Outcome;
+use super::{End, Outcome};
 use crate::SampleError;
 use crate::error::observe;
 
@@ -71,7 +71,7 @@ impl Annealing {
             temperature *= self.cooling;
             length = if 5 * kept < n { (0.9 * length).max(1e-4) } else { (1.05 * length).min(0.5) };
         }
-        Ok(Outcome { points: state.points, iterations: self.iterations, converged: false })
+        Ok(Outcome { points: state.points, iterations: self.iterations, end: End::Iterations })
     }
 }
 

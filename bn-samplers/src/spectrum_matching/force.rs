@@ -3,9 +3,10 @@
 use bn_core::{Curve, DVec2, Observer, PointSet, Progress, torus};
 use bn_spectral::{PairHistogram, Target};
 
-use super::Outcome;
 use super::table_forces::{MOST_STRENGTHS, table_forces};
+use super::{End, Outcome};
 use crate::SampleError;
+use crate::common_options::check_range;
 use crate::error::observe;
 
 /// Spectrum matching as in the thesis, §5.2.1: points attract or repel each other by
@@ -40,12 +41,20 @@ impl Default for Force {
 }
 
 impl Force {
+    /// Checks what the ranges of the options promise: fields are public.
+    fn check(&self) -> Result<(), SampleError> {
+        check_range("smoothing", self.smoothing, 0.0, 1000.0)?;
+        check_range("cooling", self.cooling, 0.0, 1.0)?;
+        check_range("coldest", self.coldest, 0.0, 1.0)
+    }
+
     pub(super) fn run(
         &self,
         target: &Target,
         start: &PointSet,
         observer: &dyn Observer,
     ) -> Result<Outcome, SampleError> {
+        self.check()?;
         let bins = start.len().clamp(2, MOST_STRENGTHS - 1);
         let wanted = target.rdf_histogram(bins).smoothed(self.smoothing * 0.5 / bins as f64);
         let mut points = start.clone();
@@ -74,8 +83,8 @@ impl Force {
                 moved(&points, &table_forces(points.points(), &integral(&excess)), temperature);
             iteration += 1;
         }
-        let converged = temperature < self.coldest;
-        Ok(Outcome { points: best.1.into_points(), iterations: iteration, converged })
+        let end = if temperature < self.coldest { End::Temperature } else { End::Iterations };
+        Ok(Outcome { points: best.1.into_points(), iterations: iteration, end })
     }
 
     /// g − gₜ of a set, smoothed.

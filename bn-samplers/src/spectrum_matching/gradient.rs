@@ -3,9 +3,9 @@
 use bn_core::{Curve, Observer, PointSet, Progress};
 use bn_spectral::{PairHistogram, Target};
 
-use super::Outcome;
 use super::force::moved;
 use super::table_forces::{MOST_STRENGTHS, table_forces};
+use super::{End, Outcome};
 use crate::SampleError;
 use crate::error::observe;
 
@@ -74,8 +74,8 @@ impl Gradient {
                 step *= 0.5;
             }
         }
-        let converged = step < self.smallest_step;
-        Ok(Outcome { points: points.into_points(), iterations: iteration, converged })
+        let end = if step < self.smallest_step { End::Step } else { End::Iterations };
+        Ok(Outcome { points: points.into_points(), iterations: iteration, end })
     }
 }
 

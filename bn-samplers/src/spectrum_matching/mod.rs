@@ -3,6 +3,7 @@
 mod annealing;
 mod force;
 mod gradient;
+mod options;
 pub(crate) mod single_peak;
 mod spectral;
 pub(crate) mod step;
@@ -13,15 +14,14 @@ use bn_spectral::Target;
 
 use crate::error::check_count;
 use crate::{
-    DefaultValue, OptionKind, OptionSpec, OptionValues, Report, Sample, SampleError, Sampler,
-    Stochastic,
+    DefaultValue, OptionKind, OptionSpec, Report, Sample, SampleError, Sampler, Stochastic,
 };
 
 pub use annealing::Annealing;
 pub use force::Force;
 pub use gradient::Gradient;
 use spectral::{Match, Rings};
-pub use spectral::{Residual, Spectral, Stage, Weights};
+pub use spectral::{Residual, Spectral, Weights};
 
 /// The range of frequencies, in √n, over which results are compared with their target.
 const MEASURED: f64 = 6.0;
@@ -66,7 +66,7 @@ impl Algorithm {
     #[must_use]
     pub fn with_iterations(mut self, iterations: u32) -> Self {
         match &mut self {
-            Self::Spectral(spectral) => spectral.limit(iterations),
+            Self::Spectral(spectral) => spectral.iterations = Some(iterations),
             Self::Force(force) => force.iterations = iterations,
             Self::Gradient(gradient) => gradient.iterations = iterations,
             Self::Annealing(annealing) => annealing.iterations = iterations,
@@ -79,7 +79,45 @@ impl Algorithm {
 struct Outcome {
     points: Vec<DVec2>,
     iterations: u32,
-    converged: bool,
+    end: End,
+}
+
+/// Why a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    /// The goal is met.
+    Tolerance,
+    /// Nothing lower was found along the gradient: a minimum, as far as rounding lets it be seen.
+    Gradient,
+    /// Line searches have all but ceased to gain.
+    Stalled,
+    /// The budget of evaluations is spent.
+    Evaluations,
+    /// The schedule of temperatures is through.
+    Temperature,
+    /// Steps have become too short to matter.
+    Step,
+    /// The budget of iterations is spent.
+    Iterations,
+}
+
+impl End {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Tolerance => "tolerance",
+            Self::Gradient => "gradient",
+            Self::Stalled => "stalled",
+            Self::Evaluations => "evaluations",
+            Self::Temperature => "temperature",
+            Self::Step => "step",
+            Self::Iterations => "iterations",
+        }
+    }
+
+    /// Whether the algorithm came to its own end.
+    fn is_convergence(self) -> bool {
+        matches!(self, Self::Tolerance | Self::Temperature | Self::Step)
+    }
 }
 
 /// Point sets with the power spectrum of a [`Target`], as nearly as `algorithm` comes to it from
@@ -87,7 +125,9 @@ struct Outcome {
 ///
 /// Never refuses a target: the report's `residual` says how near the result is, as the root mean
 /// square of its ring means less the target over all modes up to 6√n; `empty_power` is the mean power
-/// where the target has none.
+/// where the target has none. `ended_by` says why the search ended: `tolerance` (met), `temperature`
+/// or `step` (its schedule is through), `gradient` (no way down), `stalled` (next to nothing gained),
+/// `evaluations` or `iterations` (the budget is spent); of these the first three count as `converged`.
 ///
 /// ```
 /// use bn_core::{Density, Seed, Unobserved};
@@ -123,7 +163,7 @@ impl SpectrumMatching {
     /// If the set is so large that its spectrum can't be had.
     pub fn residual(&self, set: &PointSet) -> Result<Residual, SampleError> {
         let limit = spectral::max_frequency(MEASURED, set.len());
-        let rings = Rings::new(&self.target, limit, Weights::ATTAINABLE);
+        let rings = Rings::new(&self.target, limit, Weights::default());
         let mut measure = spectral::plan(Match::<f32>::new(rings, set.len(), spectral::TOLERANCE))?;
         Ok(measure.residual_of(set.points()))
     }
@@ -159,36 +199,9 @@ impl Sampler for SpectrumMatching {
             .with("iterations", u64::from(outcome.iterations))
             .with("residual", residual.rms)
             .with("empty_power", residual.empty_power)
-            .with("converged", outcome.converged);
+            .with("converged", outcome.end.is_convergence())
+            .with("ended_by", outcome.end.name());
         Ok(Sample { points, report })
-    }
-}
-
-/// The option that chooses the algorithm.
-const ALGORITHM: OptionSpec = OptionSpec {
-    name: "algorithm",
-    kind: OptionKind::Choice(Algorithm::NAMES),
-    default: DefaultValue::Value("spectral"),
-    help: "how to come near the spectrum",
-    unit: "",
-};
-
-/// The option that bounds the work.
-const ITERATIONS: OptionSpec = OptionSpec {
-    name: "iterations",
-    kind: OptionKind::Integer { min: 0, max: 1_000_000 },
-    default: DefaultValue::Absent("until it stops paying"),
-    help: "the most iterations",
-    unit: "",
-};
-
-/// The algorithm that [`ALGORITHM`] and [`ITERATIONS`] ask for.
-fn chosen_algorithm(options: &OptionValues) -> Algorithm {
-    let named = options.choice(ALGORITHM.name).and_then(Algorithm::named).unwrap_or_default();
-    match options.integer(ITERATIONS.name) {
-        // The option's range ends below 2³².
-        Some(iterations) => named.with_iterations(iterations as u32),
-        None => named,
     }
 }
 

@@ -3,9 +3,8 @@
 use bn_core::{Density, Observer, Seed};
 use bn_spectral::{SinglePeak as Peak, Target};
 
-use super::{
-    ALGORITHM, Algorithm, ITERATIONS, SpectrumMatching, chosen_algorithm, frequency, invalid_target,
-};
+use super::options::with_algorithms;
+use super::{Algorithm, SpectrumMatching, frequency, invalid_target};
 use crate::error::check_count;
 use crate::{CountRule, Method, PointOrder, Sample, SampleError, Sampler};
 
@@ -38,19 +37,17 @@ pub(crate) const METHOD: Method = Method {
     order: PointOrder::Random,
     counts: CountRule::Any,
     seeded: true,
-    options: &[
+    options: &with_algorithms::<_, { 3 + Algorithm::OPTIONS.len() }>([
         frequency("nu0", "60 sqrt(n/4096)", "where the peak begins"),
         frequency("peak", "19 sqrt(n/4096)", "the peak's power above 1: (height - 1) times width"),
         frequency("sigma", "2.5 sqrt(n/4096)", "deviation of the Gaussian that smooths the peak"),
-        ALGORITHM,
-        ITERATIONS,
-    ],
+    ]),
     build: |options| {
         Ok(Box::new(SinglePeak {
             nu0: options.real("nu0"),
             peak: options.real("peak"),
             sigma: options.real("sigma"),
-            algorithm: chosen_algorithm(options),
+            algorithm: Algorithm::from_options(options)?,
         }))
     },
     version: 2,

@@ -3,9 +3,8 @@
 use bn_core::{Density, Observer, Seed};
 use bn_spectral::{Target, highest_step};
 
-use super::{
-    ALGORITHM, Algorithm, ITERATIONS, SpectrumMatching, chosen_algorithm, frequency, invalid_target,
-};
+use super::options::with_algorithms;
+use super::{Algorithm, SpectrumMatching, frequency, invalid_target};
 use crate::error::check_count;
 use crate::{CountRule, Method, PointOrder, Sample, SampleError, Sampler};
 
@@ -34,13 +33,16 @@ pub(crate) const METHOD: Method = Method {
     order: PointOrder::Random,
     counts: CountRule::Any,
     seeded: true,
-    options: &[
-        frequency("nu0", "sqrt(n/pi), the highest that is realizable", "the frequency of the step"),
-        ALGORITHM,
-        ITERATIONS,
-    ],
+    options: &with_algorithms::<_, { 1 + Algorithm::OPTIONS.len() }>([frequency(
+        "nu0",
+        "sqrt(n/pi), the highest that is realizable",
+        "the frequency of the step",
+    )]),
     build: |options| {
-        Ok(Box::new(Step { nu0: options.real("nu0"), algorithm: chosen_algorithm(options) }))
+        Ok(Box::new(Step {
+            nu0: options.real("nu0"),
+            algorithm: Algorithm::from_options(options)?,
+        }))
     },
     version: 2,
 };

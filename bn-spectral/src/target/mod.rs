@@ -130,7 +130,8 @@ impl Target {
     /// The spectrum with samples (ν, P), ν ascending, linear between them; P before the first
     /// sample is that of the first, beyond the last it is 1.
     ///
-    /// P may be negative, which [`Realizability`](crate::Realizability) will point out.
+    /// P may be negative, or end before it has settled at 1, which
+    /// [`Realizability`](crate::Realizability) will point out.
     ///
     /// # Errors
     /// If there are too few or many samples, or they aren't finite and ascending.
@@ -140,8 +141,8 @@ impl Target {
     }
 
     /// The spectrum whose RDF has samples (r, g), r ascending in unit lengths; g before the first
-    /// sample is that of the first, beyond the last it is 1. Where g doesn't settle at 1, g − 1 is
-    /// tapered towards its end (Blackman), or the spectrum would ring.
+    /// sample is that of the first, beyond the last it is 1. Where g doesn't settle at 1 the spectrum
+    /// rings, and [`Realizability`](crate::Realizability) warns of it.
     ///
     /// # Errors
     /// As [`Self::power_curve`].
@@ -151,7 +152,7 @@ impl Target {
     }
 
     /// The mean radial power of `sets`, ring by ring up to 6√n, as seen at the density of `points`
-    /// points: frequencies scale with its square root (thesis §5.2.3).
+    /// points: frequencies scale with its square root (thesis §5.2.3). P is constant on each ring.
     ///
     /// # Errors
     /// If there is no set, the sets differ in size, or there is no point to make.
@@ -202,6 +203,11 @@ impl Target {
         self.density
     }
 
+    /// Whether it was measured on point sets: [`Self::imitating`].
+    pub fn is_measured(&self) -> bool {
+        matches!(&self.shape, Shape::Power(samples) if samples.is_measured())
+    }
+
     /// P(ν) at ν ≥ 0 cycles per unit, without the point mass at 0.
     pub fn power(&self, nu: f64) -> f64 {
         self.shape.power(nu)
@@ -222,6 +228,16 @@ impl Target {
     /// The frequency from where on P = 1, as far as it is known.
     pub fn end(&self) -> f64 {
         self.shape.end()
+    }
+
+    /// A curve that ends before it has settled at 1: whether it is of g, its last abscissa, how far its
+    /// last tenth is from 1.
+    pub(crate) fn unsettled(&self) -> Option<(bool, f64, f64)> {
+        match &self.shape {
+            Shape::Power(samples) => Some((false, samples.end(), samples.unsettled()?)),
+            Shape::Rdf(samples) => Some((true, samples.farthest(), samples.unsettled()?)),
+            _ => None,
+        }
     }
 
     /// Five standard deviations of the statistical error that g has because P was measured, at `r`.

@@ -6,12 +6,11 @@ use bn_core::Density;
 use rayon::prelude::*;
 
 use super::annuli::{Annuli, cells, steps_between};
-use crate::Window;
 use crate::bessel::j0_slice_alike;
 
 /// A curve counts as settled at 1 if its last tenth is this close to it.
 const SETTLED: f64 = 1e-3;
-/// The deviation of the Gaussian that tapers an unsettled spectrum, in ends of it: at the end e^−4.5.
+/// The deviation of the Gaussian that tapers a measured spectrum, in ends of it: at the end e^−4.5.
 const TAPER: f64 = 1.0 / 3.0;
 /// The spectrum of an RDF is tabulated up to this times √n …
 const HIGHEST: f64 = 16.0;
@@ -46,13 +45,31 @@ impl PowerSamples {
         cells(&self.nu)
     }
 
-    /// Linear between the samples.
+    /// Linear between the samples; of measured rings the mean of the ring at hand, so that means over
+    /// rings are what they were: a line through them would cut the tops off narrow peaks.
     pub(super) fn power(&self, nu: f64) -> f64 {
-        if nu > self.end() { 1.0 } else { interpolate(&self.nu, &self.power, nu) }
+        if nu > self.end() {
+            1.0
+        } else if self.is_measured() {
+            nearest(&self.nu, &self.power, nu)
+        } else {
+            interpolate(&self.nu, &self.power, nu)
+        }
     }
 
-    /// g, of annuli. Where P doesn't settle at 1 before its end, P − 1 is tapered by a Gaussian: g is
-    /// then smoothed by a Gaussian too, which can't make it negative where it wasn't.
+    pub(super) fn is_measured(&self) -> bool {
+        self.noise.is_some()
+    }
+
+    /// By how much the last tenth of the samples is away from 1 where it should have settled; nothing
+    /// is known of measured spectra beyond their ends.
+    pub(super) fn unsettled(&self) -> Option<f64> {
+        if self.is_measured() { None } else { unsettled(&self.power) }
+    }
+
+    /// g, of annuli. Of a measured spectrum that doesn't settle at 1 before its end P − 1 is tapered by
+    /// a Gaussian: what lies beyond is unknown and not 1. g is then smoothed by a Gaussian too, which
+    /// can't make it negative where it wasn't.
     pub(super) fn rdf(&self, n: f64, r: &[f64]) -> Vec<f64> {
         let excess: Vec<f64> =
             self.nu.iter().zip(&self.power).map(|(nu, p)| (p - 1.0) * self.taper(*nu)).collect();
@@ -60,7 +77,7 @@ impl PowerSamples {
     }
 
     fn taper(&self, nu: f64) -> f64 {
-        if settles(&self.power) {
+        if !self.is_measured() || unsettled(&self.power).is_none() {
             1.0
         } else {
             libm::exp(-0.5 * (nu / (TAPER * self.end())).powi(2))
@@ -95,9 +112,7 @@ impl RdfSamples {
     pub(super) fn new(density: Density, samples: &[(f64, f64)]) -> Self {
         let n = density.points_per_unit_area();
         let (r, g): (Vec<f64>, Vec<f64>) = samples.iter().copied().unzip();
-        let end = r[r.len() - 1];
-        let taper = |r: f64| if settles(&g) { 1.0 } else { Window::BLACKMAN.at(r, end) };
-        let excess: Vec<f64> = r.iter().zip(&g).map(|(&r, g)| (g - 1.0) * taper(r)).collect();
+        let excess: Vec<f64> = g.iter().map(|g| g - 1.0).collect();
         // No detail of g reaches beyond half its samples' rate.
         let finest = r.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         let highest = (HIGHEST * n.sqrt()).min(0.5 / finest);
@@ -107,6 +122,16 @@ impl RdfSamples {
             *power = 1.0 + n * *power;
         }
         Self { r, g, step: nu[1], power }
+    }
+
+    /// By how much the last tenth of the samples is away from 1 where it should have settled.
+    pub(super) fn unsettled(&self) -> Option<f64> {
+        unsettled(&self.g)
+    }
+
+    /// The last radius.
+    pub(super) fn farthest(&self) -> f64 {
+        self.r[self.r.len() - 1]
     }
 
     pub(super) fn end(&self) -> f64 {
@@ -124,13 +149,15 @@ impl RdfSamples {
     }
 
     pub(super) fn rdf(&self, r: f64) -> f64 {
-        if r > self.r[self.r.len() - 1] { 1.0 } else { interpolate(&self.r, &self.g, r) }
+        if r > self.farthest() { 1.0 } else { interpolate(&self.r, &self.g, r) }
     }
 }
 
-fn settles(values: &[f64]) -> bool {
+/// The largest distance from 1 in the last tenth, if it is one that matters.
+fn unsettled(values: &[f64]) -> Option<f64> {
     let tail = &values[values.len() - values.len().div_ceil(10)..];
-    tail.iter().all(|v| (v - 1.0).abs() < SETTLED)
+    let most = tail.iter().map(|v| (v - 1.0).abs()).fold(0.0, f64::max);
+    (most >= SETTLED).then_some(most)
 }
 
 /// Linear interpolation between ascending abscissae; the end values outside.
@@ -144,4 +171,10 @@ fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
     }
     let t = (at - x[after - 1]) / (x[after] - x[after - 1]);
     y[after - 1] * (1.0 - t) + y[after] * t
+}
+
+/// The value at the nearest of ascending abscissae.
+fn nearest(x: &[f64], y: &[f64], at: f64) -> f64 {
+    let after = x.partition_point(|x| *x <= at).clamp(1, x.len() - 1);
+    if at < 0.5 * (x[after - 1] + x[after]) { y[after - 1] } else { y[after] }
 }

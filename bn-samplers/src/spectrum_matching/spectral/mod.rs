@@ -7,8 +7,9 @@ mod rings;
 use bn_core::{DVec2, Observer, PointSet, Progress, torus};
 use bn_spectral::{NufftError, NufftOptions, Real, Realizability, Target};
 
-use super::Outcome;
+use super::{End, MEASURED, Outcome};
 use crate::SampleError;
+use crate::common_options::check_range;
 use crate::error::observe;
 
 use lbfgs::Lbfgs;
@@ -18,12 +19,20 @@ pub use rings::{Residual, Weights};
 
 /// Relative error of the Fourier sums: a power of 1e-8 is still told from 0.
 pub(super) const TOLERANCE: f64 = 1e-4;
-/// The same in double precision, for costs that single precision can't resolve …
+/// The same in double precision, for residuals that single precision can't resolve …
 const FINE_TOLERANCE: f64 = 1e-7;
 /// … below this.
-const FINE_COST: f64 = 1e-9;
+const FINE_RESIDUAL: f64 = 1e-4;
+/// The range of frequencies, in √n, that shapes a pattern.
+const COARSE_RANGE: f64 = 1.5;
+/// Evaluations of a stage …
+const EVALUATIONS: u32 = 150;
+/// … and where the target was measured.
+const MEASURED_EVALUATIONS: u32 = 1000;
 /// How far the fastest point goes at the first trial of a stage, in 1/√n.
 const FIRST_MOVE: f64 = 0.1;
+/// The cost to end at where no residual is asked for.
+const COST: f64 = 1e-6;
 /// Earlier stages may end at this many times the cost that the last one ends at.
 const COARSE: f64 = 1000.0;
 /// The most evaluations of earlier stages if no set can have the spectrum: more bring order into the
@@ -40,38 +49,34 @@ const LEAST_GAIN: f64 = 0.01;
 ///
 /// In stages, from a range of frequencies that shapes the pattern to one that covers all that Ω
 /// looks at. An evaluation costs two non-uniform FFTs, O(n·w² + K² log K), whose plans are kept; the
-/// number of evaluations doesn't grow with n. Realizable spectra are met to any accuracy: the cost
-/// falls below `tolerance`. Of others the search ends where it stops paying.
+/// number of evaluations doesn't grow with n. Realizable spectra are met to any accuracy. Of others
+/// the search ends where it stops paying: where ten line searches gain less than 1 %.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Spectral {
-    /// Ranges and budgets, coarse to fine.
-    pub stages: Vec<Stage>,
-    /// Stop at this cost, about a mean square error weighted by [`Weights`].
-    pub tolerance: f64,
-    /// None: as the target allows, [`Weights::ATTAINABLE`] or [`Weights::NEAREST`].
-    pub weights: Option<Weights>,
-}
-
-/// A stage of [`Spectral`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Stage {
-    /// K/√n: the highest frequency that is matched.
-    pub range: f64,
-    /// The most evaluations.
-    pub evaluations: u32,
+    /// The highest frequency that is matched in each stage, K/√n, coarse to fine.
+    pub ranges: Vec<f64>,
+    /// The most evaluations of each stage. None: 150, and 1000 for a spectrum that was measured, which is
+    /// known to be one of point sets, perhaps well ordered ones that are found slowly.
+    pub evaluations: Option<u32>,
+    /// The most evaluations of all stages, those of the first stages counted in full.
+    pub iterations: Option<u32>,
+    /// Stop at this residual: the root mean square of ring means less the target over all modes up
+    /// to the last range. None: at a cost, the mean square weighted by `weights`, of 1e-6. Earlier
+    /// stages end at 1000 times the cost, or its root times the residual.
+    pub tolerance: Option<f64>,
+    /// What deviations cost.
+    pub weights: Weights,
 }
 
 impl Default for Spectral {
     fn default() -> Self {
         Self {
-            stages: vec![
-                Stage { range: 1.5, evaluations: 150 },
-                Stage { range: 6.0, evaluations: 150 },
-            ],
-            tolerance: 1e-6,
-            weights: None,
+            ranges: Self::staged(MEASURED, 2),
+            evaluations: None,
+            iterations: None,
+            tolerance: None,
+            weights: Weights::default(),
         }
     }
 }
@@ -83,12 +88,23 @@ pub(super) fn max_frequency(range: f64, n: usize) -> usize {
 }
 
 impl Spectral {
-    /// Lowers the budgets to `evaluations` in all, the first stage's share first.
-    pub(super) fn limit(&mut self, mut evaluations: u32) {
-        for stage in &mut self.stages {
-            stage.evaluations = stage.evaluations.min(evaluations);
-            evaluations -= stage.evaluations;
+    /// The ranges of `stages` stages, growing in equal ratios from 1.5, or from `range` where that is
+    /// less, to `range`.
+    pub fn staged(range: f64, stages: u32) -> Vec<f64> {
+        let ratio = (range / COARSE_RANGE).max(1.0);
+        let part = |left: u32| f64::from(left) / f64::from(stages.max(2) - 1);
+        (0..stages).rev().map(|left| range * libm::pow(ratio, -part(left))).collect()
+    }
+
+    /// Checks what the ranges of the options promise: fields are public.
+    fn check(&self) -> Result<(), SampleError> {
+        let Weights { empty, exponent, ring } = self.weights;
+        check_range("weight-exponent", exponent, 0.0, 8.0)?;
+        for weight in [empty.unwrap_or(ring), ring] {
+            check_range("weights", weight, 0.0, 1e9)?;
         }
+        check_range("tolerance", self.tolerance.unwrap_or(0.0), 0.0, f64::MAX)?;
+        self.ranges.iter().try_for_each(|&range| check_range("range", range, 0.0, 16.0))
     }
 
     pub(super) fn run(
@@ -97,20 +113,27 @@ impl Spectral {
         start: &PointSet,
         observer: &dyn Observer,
     ) -> Result<Outcome, SampleError> {
+        self.check()?;
         let verdict = Realizability::of(target);
-        let weights = self.weights.unwrap_or_else(|| default_weights(&verdict));
+        let weights = self.weights.completed(verdict.is_unobjectionable());
         let n = start.len();
         let root = (n as f64).sqrt();
         let mut x: Vec<DVec2> = start.points().iter().map(|p| *p * root).collect();
-        let (mut iterations, mut before, mut converged) = (0, 0, false);
-        for (number, stage) in self.stages.iter().enumerate() {
-            let last = number + 1 == self.stages.len();
-            let goal = if last { self.tolerance } else { COARSE * self.tolerance };
-            let rings = Rings::new(target, max_frequency(stage.range, n), weights);
+        let (mut iterations, mut before, mut end) = (0, 0, End::Evaluations);
+        let each = if target.is_measured() { MEASURED_EVALUATIONS } else { EVALUATIONS };
+        let each = self.evaluations.unwrap_or(each);
+        let mut left = self.iterations.unwrap_or(u32::MAX);
+        for (number, &range) in self.ranges.iter().enumerate() {
+            let last = number + 1 == self.ranges.len();
+            let goal =
+                if last { Goal::of(self.tolerance) } else { Goal::of(self.tolerance).coarse() };
+            let rings = Rings::new(target, max_frequency(range, n), weights);
             let most = if last || verdict.realizable { u32::MAX } else { UNATTAINABLE };
-            let budget = stage.evaluations.min(most);
+            let share = each.min(left);
+            left -= share;
+            let budget = share.min(most);
             let search = Search { budget, goal, observer, number, before };
-            let found = if goal < FINE_COST {
+            let found = if goal.is_fine() {
                 search.run(&mut plan(Match::<f64>::new(rings, n, FINE_TOLERANCE))?, x)?
             } else {
                 search.run(&mut plan(Match::<f32>::new(rings, n, TOLERANCE))?, x)?
@@ -118,10 +141,10 @@ impl Spectral {
             x = found.x;
             iterations += found.evaluations;
             before += found.searches;
-            converged = found.converged;
+            end = found.end;
         }
         let points = x.iter().map(|x| torus::wrap_point(*x / root)).collect();
-        Ok(Outcome { points, iterations, converged })
+        Ok(Outcome { points, iterations, end })
     }
 }
 
@@ -130,19 +153,43 @@ pub(super) fn plan<P>(made: Result<P, NufftError>) -> Result<P, SampleError> {
     made.map_err(|error| SampleError::InvalidOption { option: "range", reason: error.to_string() })
 }
 
-/// Spectra that leave less than 0.7 √n empty and are realizable as far as is known can be met.
-fn default_weights(verdict: &Realizability) -> Weights {
-    if verdict.realizable && verdict.warnings.is_empty() {
-        Weights::ATTAINABLE
-    } else {
-        Weights::NEAREST
+/// Where a stage may end.
+#[derive(Clone, Copy)]
+enum Goal {
+    Cost(f64),
+    Residual(f64),
+}
+
+impl Goal {
+    fn of(tolerance: Option<f64>) -> Self {
+        tolerance.map_or(Self::Cost(COST), Self::Residual)
+    }
+
+    /// What will do before the last stage.
+    fn coarse(self) -> Self {
+        match self {
+            Self::Cost(cost) => Self::Cost(COARSE * cost),
+            Self::Residual(residual) => Self::Residual(COARSE.sqrt() * residual),
+        }
+    }
+
+    fn is_met(self, cost: f64, residual: f64) -> bool {
+        match self {
+            Self::Cost(most) => cost <= most,
+            Self::Residual(most) => residual <= most,
+        }
+    }
+
+    /// Whether it takes double precision to see that it is met.
+    fn is_fine(self) -> bool {
+        matches!(self, Self::Residual(most) if most < FINE_RESIDUAL)
     }
 }
 
 /// One stage's search.
 struct Search<'a> {
     budget: u32,
-    goal: f64,
+    goal: Goal,
     observer: &'a dyn Observer,
     number: usize,
     /// Line searches of earlier stages.
@@ -154,7 +201,7 @@ struct Found {
     x: Vec<DVec2>,
     evaluations: u32,
     searches: u64,
-    converged: bool,
+    end: End,
 }
 
 impl Search<'_> {
@@ -166,24 +213,27 @@ impl Search<'_> {
             x.iter().map(|x| torus::wrap_point(*x / root)).collect()
         };
         let stage = ["matching coarsely", "matching"][self.number.min(1)];
-        loop {
-            let value = search.value();
-            let figures = [("cost", value), ("rms", cost.residual().rms)];
+        let end = loop {
+            let (value, rms) = (search.value(), cost.residual().rms);
+            let figures = [("cost", value), ("rms", rms)];
             let done = u64::from(search.evaluations().min(self.budget));
             let progress = Progress::new(stage, done, Some(self.budget.into()));
             observe(self.observer, &progress.with_figures(&figures))?;
             let iteration = self.before + (history.len() - 1) as u64;
             self.observer.iterated(iteration, &|| places(search.x()));
             let earlier = history.len().checked_sub(PATIENCE + 1).map(|i| history[i]);
-            let stuck = earlier.is_some_and(|earlier| value > (1.0 - LEAST_GAIN) * earlier);
-            let over = value <= self.goal || search.evaluations() >= self.budget || stuck;
-            if over || !search.step(cost, FIRST_MOVE) {
-                break;
+            if self.goal.is_met(value, rms) {
+                break End::Tolerance;
+            } else if search.evaluations() >= self.budget {
+                break End::Evaluations;
+            } else if earlier.is_some_and(|earlier| value > (1.0 - LEAST_GAIN) * earlier) {
+                break End::Stalled;
+            } else if !search.step(cost, FIRST_MOVE) {
+                break End::Gradient;
             }
             history.push(search.value());
-        }
-        let (evaluations, converged) = (search.evaluations(), search.value() <= self.goal);
+        };
         let searches = (history.len() - 1) as u64;
-        Ok(Found { x: search.into_x(), evaluations, searches, converged })
+        Ok(Found { evaluations: search.evaluations(), x: search.into_x(), searches, end })
     }
 }

@@ -152,7 +152,7 @@ mod tests {
         let unit = 1.0 / (N as f64).sqrt();
         let points: Vec<DVec2> = x.iter().map(|x| *x * unit).collect();
         let modes = direct_modes(&points, None, K);
-        let rings = Rings::new(&target(), K, Weights::ATTAINABLE);
+        let rings = Rings::new(&target(), K, Weights::default());
         let mut sums = vec![0.0; rings.room()];
         let limit = K as i64;
         for kx in -limit..=limit {
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn the_cost_is_that_of_direct_sums() {
-        let rings = Rings::new(&target(), K, Weights::ATTAINABLE);
+        let rings = Rings::new(&target(), K, Weights::default());
         let mut cost = Match::<f64>::new(rings, N, 1e-10).expect("small");
         let (x, mut gradient) = (places(), vec![DVec2::ZERO; N]);
         let (got, want) = (cost.evaluate(&x, &mut gradient), oracle(&x));
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn the_gradient_is_that_of_the_cost() {
         for tolerance in [1e-10, 1e-3] {
-            let rings = Rings::new(&target(), K, Weights::ATTAINABLE);
+            let rings = Rings::new(&target(), K, Weights::default());
             let mut cost = Match::<f64>::new(rings, N, tolerance).expect("small");
             let (x, mut gradient) = (places(), vec![DVec2::ZERO; N]);
             cost.evaluate(&x, &mut gradient);
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn rings_count_every_mode_once() {
-        let rings = Rings::new(&target(), K, Weights::NEAREST);
+        let rings = Rings::new(&target(), K, Weights::default());
         let mut measure = Match::<f64>::new(rings, 1, 1e-10).expect("small");
         // One point has P = 1 everywhere: the residual is that of the target's empty modes.
         let residual = measure.residual_of(&[DVec2::new(0.3, 0.7)]);

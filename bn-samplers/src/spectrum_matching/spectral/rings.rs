@@ -21,21 +21,34 @@ const ROWS: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Weights {
-    /// λ, for power where there should be none.
-    pub empty: f64,
-    /// p, how fast it grows towards low frequencies.
+    /// λ, for power where there should be none; by default [`Weights::ATTAINABLE`] or
+    /// [`Weights::NEAREST`], as the target is realizable or not.
+    pub empty: Option<f64>,
+    /// p, how fast λ grows towards low frequencies. With p = 0 the few lowest modes get more than their
+    /// share of a misfit, and the points leave holes: of 1.38 `d_hex` instead of 0.80 for single-peak blue
+    /// noise.
     pub exponent: f64,
     /// μ, for the ring means.
     pub ring: f64,
 }
 
+impl Default for Weights {
+    fn default() -> Self {
+        Self { empty: None, exponent: 2.0, ring: 25.0 }
+    }
+}
+
 impl Weights {
-    /// For spectra that point sets can have: p = 2, well conditioned.
-    pub const ATTAINABLE: Self = Self { empty: 100.0, exponent: 2.0, ring: 25.0 };
-    /// For spectra that no set can have: the misfit is spread so that the rest stays flat, and kept
-    /// from the lowest frequencies. With p = 0 their few modes get more than their share of it, and the
-    /// points leave holes, of 1.38 `d_hex` instead of 0.80 for single-peak blue noise.
-    pub const NEAREST: Self = Self { empty: 4.0, exponent: 2.0, ring: 25.0 };
+    /// λ for spectra that point sets can have: well conditioned.
+    pub const ATTAINABLE: f64 = 100.0;
+    /// λ for spectra that no set can have: the misfit is spread so that the rest stays flat.
+    pub const NEAREST: f64 = 4.0;
+
+    /// With λ as the target wants it, if it isn't chosen.
+    pub(super) fn completed(self, attainable: bool) -> Self {
+        let default = if attainable { Self::ATTAINABLE } else { Self::NEAREST };
+        Self { empty: self.empty.or(Some(default)), ..self }
+    }
 }
 
 /// Rings of width ½ of the integer modes 0 < |k| < K, and what each is to hold.
@@ -79,12 +92,13 @@ impl Rings {
         // Without an empty region the weights' scale is that of the spacing.
         let root = target.density().points_per_unit_area().sqrt();
         let edge = (0..count).rev().find(|&ring| empty(ring)).map_or(0.5 * root, middle);
+        let lambda = weights.empty.unwrap_or(Weights::ATTAINABLE);
         let goal = |ring: usize| Goal {
             modes: modes[ring],
             power: power(ring),
             empty: empty(ring),
             weight: if empty(ring) {
-                weights.empty * libm::pow(edge / middle(ring), weights.exponent)
+                lambda * libm::pow(edge / middle(ring), weights.exponent)
             } else {
                 weights.ring * (edge / middle(ring)).min(1.0).powi(2)
             },
