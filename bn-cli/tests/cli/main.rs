@@ -6,5 +6,6 @@ mod analyze;
 mod folder;
 mod generate;
 mod matching;
+mod reconstruction;
 mod render;
 mod report;

@@ -11,6 +11,7 @@ mod moves;
 mod optimization;
 mod pages;
 mod panels;
+mod reconstruction;
 mod spectra;
 mod studio;
 mod supersampling;
@@ -34,7 +35,7 @@ pub(crate) struct FigureSpec {
 }
 
 /// All figures, in the thesis's order; one file a family.
-static FIGURES: [&[FigureSpec]; 12] = [
+static FIGURES: [&[FigureSpec]; 13] = [
     test_scenes::FIGURES,
     zone_plates::FIGURES,
     supersampling::FIGURES,
@@ -46,6 +47,7 @@ static FIGURES: [&[FigureSpec]; 12] = [
     designs::FIGURES,
     feasible::FIGURES,
     algorithms::FIGURES,
+    reconstruction::FIGURES,
     pages::FIGURES,
 ];
 

@@ -43,7 +43,11 @@ pub(super) fn render(table: &Table, plan: Plan) -> String {
 }
 
 fn heading(id: &str) -> String {
-    if id == "B" { "Appendix B".to_owned() } else { format!("Table {id}") }
+    match id {
+        "B" => "Appendix B".to_owned(),
+        number if number.starts_with(|c: char| c.is_ascii_digit()) => format!("Table {number}"),
+        _ => "Beyond the thesis".to_owned(),
+    }
 }
 
 fn name(row: &Row) -> String {

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::{Cell, Context, Row, Table, TableSpec};
 use crate::measure::downsampling::Downsampling;
-use crate::thesis::{Judgement, RowSpec, Verdict};
+use crate::thesis::{Judgement, RowSpec};
 
 pub(super) const SPEC: TableSpec = TableSpec {
     id: "5.3",
@@ -152,7 +152,7 @@ fn judged(row: &Measured, last: &[(&str, f64)], context: &Context<'_>) -> Row {
     if let (true, Some(value)) = (row.is_thesis, row.mean(0, highest)) {
         let misplaced = judge.misplaced(key, value, last, RATES[highest]);
         let why = "how far, in dB, from the thesis's order of methods; not judged";
-        let judgement = nothing(why);
+        let judgement = Judgement::shown(why);
         cells.push(Cell::new(
             &format!("misplaced at {} spp", RATES[highest]),
             Some(alone(misplaced)),
@@ -175,7 +175,7 @@ fn judged(row: &Measured, last: &[(&str, f64)], context: &Context<'_>) -> Row {
 
 /// How good the reference itself is.
 fn reference(test: &Downsampling) -> Outcome<Row> {
-    let judgement = nothing("the reference against the convolution by quadrature");
+    let judgement = Judgement::shown("the reference against the convolution by quadrature");
     Ok(Row {
         label: "Reference".to_owned(),
         method: "hexagonal".to_owned(),
@@ -189,15 +189,4 @@ fn reference(test: &Downsampling) -> Outcome<Row> {
 /// A value without an error.
 fn alone(value: f64) -> Estimate {
     Estimate { value, std_error: None }
-}
-
-/// The judgement on what is shown only.
-fn nothing(what: &str) -> Judgement {
-    Judgement {
-        thesis: None,
-        expected: None,
-        tolerance: None,
-        reason: Some(what.to_owned()),
-        verdict: Verdict::NotJudged,
-    }
 }

@@ -237,6 +237,11 @@ impl Judgement {
         Self { thesis: None, expected: None, tolerance: None, reason, verdict }
     }
 
+    /// The judgement on what is shown only, with a word on it.
+    pub(crate) fn shown(what: &str) -> Self {
+        Self::not_judged(Some(what.to_owned()), Verdict::NotJudged)
+    }
+
     /// `good` if `ours` lies at most `tolerance` outside `expected`.
     pub(super) fn held_against(
         ours: Option<f64>,

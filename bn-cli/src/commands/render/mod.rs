@@ -1,5 +1,6 @@
 //! `bn render`: images from sampling patterns.
 
+mod reconstruction;
 mod reference;
 mod sampling;
 mod scene;
@@ -8,14 +9,14 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use bn_render::{
-    BitDepth, Encoding, Image, Normalization, PngOptions, RenderStats, SCENES, SUPERSAMPLING,
-    difference, error_picture, mean_square_error, peak_signal_to_noise,
+    BitDepth, Encoding, Image, Normalization, PngOptions, SCENES, SUPERSAMPLING, difference,
+    error_picture, mean_square_error, peak_signal_to_noise,
 };
 use clap::{Args, Command, ValueEnum};
 use serde_json::{Value, json};
 
 use self::reference::Reference;
-use self::sampling::{Sampling, SamplingArgs};
+use self::sampling::{Done, Sampling, SamplingArgs};
 use self::scene::{Curve, SceneArgs, Subject};
 use super::Global;
 use crate::image_file::{ImageFormat, Rows, Target};
@@ -58,7 +59,7 @@ pub(super) struct Render {
     )]
     error_gain: f32,
     /// A JSON account on standard output: width, height, spp, samples, `samples_skipped`, mse, psnr,
-    /// seconds and what was asked for
+    /// seconds and what was asked for; with --reconstruct act or pocs also iterations and residual
     #[arg(long, help_heading = "Output")]
     json: bool,
 }
@@ -81,13 +82,16 @@ pub(super) fn command() -> Command {
              its centre at (i + 1/2, j + 1/2), v down; the sample of point (x, y) in tile (a, b) lies \
              at ((a + x) L, (b + y) L) with L = sqrt(n/spp) pixels. A pixel is the sum of r(d) I over \
              the samples within the kernel's square support over the sum of r(d) (--normalize \
-             density), or over spp times the kernel's integral (none). Images are streamed to disk. \
+             density), or over spp times the square of the kernel's integral (none). Images are \
+             streamed to disk. --reconstruct act and pocs fit a band-limited function to the samples \
+             instead and convolve that with the kernel. \
              PSNR is 10 log10(1/MSE) of unquantised values.",
         )
         .after_help(format!(
             "Scenes:\n{}\n\nSupersampling sets: {}\n\nExamples:\n  \
              bn render zone-plate --pattern fpo --spp 4 -o plate.png\n  \
              bn render checkerboard --pattern step.txt --spp 8 --reference 512 --error error.png -o board.png\n  \
+             bn render zone-plate-limited --frequency 0.4 --pattern jittered --reconstruct act -o act.png\n  \
              bn render photo.png --size 160x160 --pattern jittered --spp 16 --kernel mitchell -o small.exr",
             scenes.join("\n"),
             SUPERSAMPLING.join(", ")
@@ -103,9 +107,13 @@ pub(super) fn run(args: &Render, global: &Global) -> Outcome {
     let pattern_seconds = start.elapsed().as_secs_f64();
     let reference = args.reference(&subject, &sampling, global)?;
     let start = Instant::now();
-    let (stats, image) = args.render(&subject, &sampling, &bar, targets.image.as_ref())?;
+    let (done, image) = args.render(&subject, &sampling, &bar, targets.image.as_ref())?;
     let seconds = start.elapsed().as_secs_f64();
     drop(bar);
+    let stats = &done.stats;
+    if let Some(fit) = &done.fit {
+        reconstruction::remark(fit, global);
+    }
     if stats.empty_pixels > 0 {
         global.remark(format!(
             "{} pixels have no sample in reach; they take the scene's value nearby",
@@ -122,7 +130,7 @@ pub(super) fn run(args: &Render, global: &Global) -> Outcome {
         }
         _ => None,
     };
-    let account = args.account(&subject, &sampling, &stats, compared.as_ref(), &pattern);
+    let account = args.account(&subject, &sampling, &done, compared.as_ref(), &pattern);
     if args.json {
         let mut account = account;
         account["seconds"] = json!(seconds);
@@ -217,23 +225,23 @@ impl Render {
         sampling: &Sampling,
         bar: &Bar,
         target: Option<&Target<'_>>,
-    ) -> Outcome<(RenderStats, Option<Image>)> {
+    ) -> Outcome<(Done, Option<Image>)> {
         let render = |rows: &mut Rows<'_>| sampling.render(subject, bar, rows);
         if self.reference.is_some() {
-            let (image, stats) = collect(subject, render)?;
+            let (image, done) = collect(subject, render)?;
             if let Some(target) = target {
                 target.write(&image)?;
             }
-            return Ok((stats, Some(image)));
+            return Ok((done, Some(image)));
         }
         let window = subject.frame.window();
-        let stats = match target {
+        let done = match target {
             Some(target) => {
                 target.stream((window.width, window.height, subject.scene.channels()), render)?
             }
             None => render(&mut |_| Ok(()))?,
         };
-        Ok((stats, None))
+        Ok((done, None))
     }
 
     /// The image to hold the rendering against and its account, made first so that a bad one is
@@ -247,7 +255,7 @@ impl Render {
         let Some(reference) = &self.reference else { return Ok(None) };
         let normalization = match sampling {
             Sampling::Tiled(tiled) => tiled.normalization,
-            Sampling::Periodic(_) => Normalization::Density,
+            Sampling::Fitted(_) | Sampling::Periodic(_) => Normalization::Density,
         };
         reference.image(subject, self.sampling.kernel(), normalization, global).map(Some)
     }
@@ -264,16 +272,20 @@ impl Render {
         &self,
         subject: &Subject,
         sampling: &Sampling,
-        stats: &RenderStats,
+        done: &Done,
         compared: Option<&Compared<'_>>,
         pattern: &Value,
     ) -> Value {
         let (frame, window) = (subject.frame, subject.frame.window());
-        let tiled = match sampling {
-            Sampling::Tiled(tiled) => Some(tiled.normalization),
-            Sampling::Periodic(_) => None,
+        let Done { stats, fit } = done;
+        let (reconstruct, normalization, weighted) = match sampling {
+            Sampling::Tiled(tiled) => {
+                (Some("convolution"), Some(tiled.normalization), tiled.pattern.is_weighted())
+            }
+            Sampling::Fitted(fitted) => (Some(fitted.name()), None, fitted.pattern.is_weighted()),
+            Sampling::Periodic(_) => (None, None, false),
         };
-        json!({
+        let mut account = json!({
             "scene": self.scene.scene,
             "width": window.width,
             "height": window.height,
@@ -281,8 +293,10 @@ impl Render {
             "channels": subject.scene.channels().count(),
             "pattern": pattern,
             "spp": sampling.samples_per_pixel(),
-            "kernel": tiled.map(|_| self.sampling.kernel().name()),
-            "normalize": tiled.map(|how| match how {
+            "reconstruct": reconstruct,
+            "kernel": reconstruct.map(|_| self.sampling.kernel().name()),
+            "weights": reconstruct.map(|_| if weighted { "voronoi" } else { "equal" }),
+            "normalize": normalization.map(|how| match how {
                 Normalization::Density => "density",
                 Normalization::None => "none",
             }),
@@ -295,7 +309,13 @@ impl Render {
             "mse": compared.map(|compared| compared.mse),
             // Equal images have no finite PSNR: null.
             "psnr": compared.map(|compared| peak_signal_to_noise(compared.mse)),
-        })
+        });
+        if let (Some(account), Some(Value::Object(fit))) =
+            (account.as_object_mut(), fit.as_ref().map(reconstruction::account))
+        {
+            account.extend(fit);
+        }
+        account
     }
 }
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use bn_core::{Observer, PointSet, Seed};
 use bn_render::{
-    Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern, RenderError, RenderStats,
-    Renderer, SUPERSAMPLING, Scene, Supersampling, TileVariation,
+    BandLimitedStats, Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern, RenderError,
+    RenderStats, Renderer, SUPERSAMPLING, Scene, Supersampling, TileVariation,
 };
 use bn_samplers::Method;
 use clap::builder::PossibleValuesParser;
@@ -15,6 +15,7 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::super::method_values::{given_values, only_set};
+use super::reconstruction::{BandLimited, ReconstructionArgs};
 use super::scene::Subject;
 use crate::image_file::Rows;
 use crate::progress_bar::Bar;
@@ -33,9 +34,10 @@ pub(super) struct SamplingArgs {
     #[arg(long, value_name = "KERNEL", default_value = "lanczos2",
           value_parser = PossibleValuesParser::new(KERNELS.iter().map(|kernel| kernel.name())))]
     kernel: String,
-    /// Divide by the kernel's weights that met samples, or by what they are on average
-    #[arg(long, value_name = "HOW", default_value = "density")]
-    normalize: Normalize,
+    /// Divide by the kernel's weights that met samples, or by what they are on average (default:
+    /// density)
+    #[arg(long, value_name = "HOW")]
+    normalize: Option<Normalize>,
     /// Points of a method's pattern (default: 4096)
     #[arg(short, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     n: Option<u32>,
@@ -53,6 +55,8 @@ pub(super) struct SamplingArgs {
     #[arg(long, value_name = "SET|FILE",
           conflicts_with_all = ["pattern", "spp", "normalize", "n", "options", "vary_tiles"])]
     supersampling: Option<String>,
+    #[command(flatten)]
+    reconstruction: ReconstructionArgs,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -73,13 +77,23 @@ enum Vary {
 pub(super) enum Sampling {
     /// A tiled pattern and a kernel.
     Tiled(Box<Tiled>),
+    /// A tiled pattern, and the band-limited function that fits its samples.
+    Fitted(Box<BandLimited>),
     /// Periodic supersampling.
     Periodic(Supersampling),
 }
 
+/// What was done for an image.
+#[derive(Default)]
+pub(super) struct Done {
+    pub(super) stats: RenderStats,
+    /// How iterations went, if there were any.
+    pub(super) fit: Option<BandLimitedStats>,
+}
+
 /// A pattern laid over the image plane, and how its samples become pixels.
 pub(super) struct Tiled {
-    pattern: Pattern,
+    pub(super) pattern: Pattern,
     table: KernelTable,
     pub(super) normalization: Normalization,
 }
@@ -92,7 +106,13 @@ impl SamplingArgs {
 
     /// The sampling and its account.
     pub(super) fn sampling(&self, bar: &Bar) -> Outcome<(Sampling, Value)> {
+        let fitted = self.reconstruction.band_limited()?;
         if let Some(name) = &self.supersampling {
+            if fitted.is_some() {
+                return Err(Failure::misuse(
+                    "--supersampling is a way from samples to pixels of its own: no --reconstruct",
+                ));
+            }
             let pattern = supersampling(name)?;
             let account = json!({
                 "supersampling": name,
@@ -100,6 +120,14 @@ impl SamplingArgs {
                 "weights_per_pixel": pattern.weights_per_pixel(),
             });
             return Ok((Sampling::Periodic(pattern), account));
+        }
+        if self.reconstruction.by_voronoi() && !matches!(self.vary_tiles, Vary::None) {
+            return Err(Failure::misuse(
+                "tiles that vary cut through Voronoi cells: --vary-tiles needs --weights equal",
+            ));
+        }
+        if fitted.is_some() && self.normalize.is_some() {
+            return Err(Failure::misuse("--normalize concerns --reconstruct convolution only"));
         }
         let name = self.pattern.as_deref().unwrap_or_default();
         let (set, account) = match bn_samplers::find(name) {
@@ -112,10 +140,14 @@ impl SamplingArgs {
             Vary::Shift => TileVariation::Shifted(self.tile_seed()),
             Vary::Both => TileVariation::TurnedAndShifted(self.tile_seed()),
         };
-        let pattern = Pattern::tiled(&set, self.spp).map_err(Failure::usage)?.varied(variation);
+        let pattern = self.reconstruction.pattern(&set, self.spp)?.varied(variation);
+        if let Some(options) = fitted {
+            let fitted = BandLimited { pattern, kernel: self.kernel(), options };
+            return Ok((Sampling::Fitted(Box::new(fitted)), account));
+        }
         let normalization = match self.normalize {
-            Normalize::Density => Normalization::Density,
-            Normalize::None => Normalization::None,
+            Some(Normalize::None) => Normalization::None,
+            Some(Normalize::Density) | None => Normalization::Density,
         };
         let table = KernelTable::new(self.kernel());
         Ok((Sampling::Tiled(Box::new(Tiled { pattern, table, normalization })), account))
@@ -189,6 +221,7 @@ impl Sampling {
     pub(super) fn samples_per_pixel(&self) -> f64 {
         match self {
             Self::Tiled(tiled) => tiled.pattern.samples_per_pixel(),
+            Self::Fitted(fitted) => fitted.pattern.samples_per_pixel(),
             Self::Periodic(pattern) => pattern.samples_per_pixel() as f64,
         }
     }
@@ -199,14 +232,25 @@ impl Sampling {
         subject: &Subject,
         observer: &dyn Observer,
         rows: &mut Rows<'_>,
-    ) -> Outcome<RenderStats> {
+    ) -> Outcome<Done> {
         match self {
-            Self::Tiled(tiled) => tiled.render(&*subject.scene, &subject.frame, observer, rows),
+            Self::Tiled(tiled) => {
+                let stats = tiled.render(&*subject.scene, &subject.frame, observer, rows)?;
+                Ok(Done { stats, fit: None })
+            }
+            Self::Fitted(fitted) => {
+                let (image, fit) = fitted.render(subject, observer)?;
+                rows(image.values())?;
+                let (samples, evaluated) = (fit.samples, fit.evaluated);
+                let stats = RenderStats { samples, evaluated, ..RenderStats::default() };
+                Ok(Done { stats, fit: Some(fit) })
+            }
             Self::Periodic(pattern) => {
                 let (image, samples) =
                     pattern.render(&*subject.scene, &subject.frame).map_err(Failure::usage)?;
                 rows(image.values())?;
-                Ok(RenderStats { samples, evaluated: samples, ..RenderStats::default() })
+                let stats = RenderStats { samples, evaluated: samples, ..RenderStats::default() };
+                Ok(Done { stats, fit: None })
             }
         }
     }
