@@ -8,7 +8,9 @@
 //! polynomial to the samples ([`BandLimitedFit`]). [`Image`] holds linear light, reads and writes PNG, PFM and (feature `exr`)
 //! `OpenEXR`; [`mean_square_error`] and [`peak_signal_to_noise`] compare. [`Supersampling`] holds the
 //! fixed patterns of real-time graphics and their transfer functions; [`exact_convolution`] is what
-//! samples without end would give.
+//! samples without end would give. A [`Prediction`] tells the error of an image from the spectra of
+//! the pattern ([`PatternPower`]) and of the image ([`ImageSpectrum`]); an [`AdaptiveRenderer`] takes
+//! as many samples as a wanted error needs.
 //!
 //! The image plane: u to the right and v down in pixels, pixel (i, j) has its centre at
 //! (i + ½, j + ½). Frequencies are in cycles per pixel.
@@ -38,6 +40,7 @@ mod kernel;
 mod metrics;
 mod pattern;
 mod plane;
+mod prediction;
 mod quadrature;
 mod resample;
 mod scene;
@@ -59,8 +62,12 @@ pub use kernel::{KERNELS, Kernel, KernelTable, MAX_RADIUS, kernel};
 pub use metrics::{difference, error_picture, mean_square_error, peak_signal_to_noise};
 pub use pattern::{Pattern, PatternError, SampleList, TileVariation};
 pub use plane::{Frame, FrameError, Rect, Window};
+pub use prediction::{ImageSpectrum, KernelTransfer, PatternPower, Prediction, SpectralLine};
 pub use quadrature::{Convolution, exact_convolution};
-pub use resample::{Band, Normalization, RenderError, RenderStats, Renderer};
+pub use resample::{
+    AdaptiveBand, AdaptiveRenderer, AdaptiveStats, Band, Normalization, ProgressivePattern,
+    RenderError, RenderStats, Renderer,
+};
 pub use scene::{
     Checkerboard, Color, Constant, Interpolation, LimitedZonePlate, Picture, PlaneWave, PlaneWaves,
     SCENES, Scene, SceneEntry, SceneError, SceneOptions, SphereScene, StripedCloth, ZonePlate,

@@ -75,6 +75,12 @@ impl BlockPlan<'_> {
 }
 
 impl BlockRow {
+    /// One reference for `width` columns, blocks unknown.
+    pub(super) fn uniform(reference: Color, channels: usize, width: usize) -> Self {
+        let columns = reference[..channels].iter().flat_map(|&c| std::iter::repeat_n(c, width));
+        Self { first: 0, blocks: Vec::new(), columns: columns.collect(), width }
+    }
+
     /// References of channel `channel` along the accumulation planes' columns.
     pub(super) fn references(&self, channel: usize) -> &[f64] {
         &self.columns[channel * self.width..][..self.width]

@@ -1,11 +1,13 @@
 //! From samples to pixels: convolution with a kernel, normalised by the density of samples or not.
 
 mod accumulate;
+mod adaptive;
 mod band;
 mod blocks;
 mod cells;
 mod renderer;
 
+pub use adaptive::{AdaptiveBand, AdaptiveRenderer, AdaptiveStats, ProgressivePattern};
 pub use renderer::{Band, Normalization, RenderError, RenderStats, Renderer};
 
 /// Side of the blocks of pixels, and of samples, in which work is skipped; a power of 2 no smaller

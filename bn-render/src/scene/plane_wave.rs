@@ -73,6 +73,11 @@ impl PlaneWaves {
         Self { mean, waves }
     }
 
+    /// The mean.
+    pub fn mean(&self) -> f64 {
+        self.mean
+    }
+
     /// The waves.
     pub fn waves(&self) -> &[PlaneWave] {
         &self.waves
