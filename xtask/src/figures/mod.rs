@@ -1,5 +1,6 @@
 //! `cargo xtask figures`: the thesis's figures, drawn from our own points.
 
+mod adaptive;
 mod algorithms;
 mod correlations;
 mod designs;
@@ -11,6 +12,7 @@ mod moves;
 mod optimization;
 mod pages;
 mod panels;
+mod prediction;
 mod reconstruction;
 mod spectra;
 mod studio;
@@ -35,10 +37,11 @@ pub(crate) struct FigureSpec {
 }
 
 /// All figures, in the thesis's order; one file a family.
-static FIGURES: [&[FigureSpec]; 13] = [
+static FIGURES: [&[FigureSpec]; 15] = [
     test_scenes::FIGURES,
     zone_plates::FIGURES,
     supersampling::FIGURES,
+    prediction::FIGURES,
     spectra::FIGURES,
     moves::FIGURES,
     optimization::FIGURES,
@@ -49,6 +52,7 @@ static FIGURES: [&[FigureSpec]; 13] = [
     algorithms::FIGURES,
     reconstruction::FIGURES,
     pages::FIGURES,
+    adaptive::FIGURES,
 ];
 
 /// The thesis's figures as SVG files (pictures as PNG) under target/thesis/figures/

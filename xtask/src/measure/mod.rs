@@ -5,6 +5,7 @@ mod curves;
 pub(crate) mod downsampling;
 pub(crate) mod imitation;
 pub(crate) mod make;
+pub(crate) mod noise;
 pub(crate) mod reconstruction;
 mod store;
 pub(crate) mod trace;

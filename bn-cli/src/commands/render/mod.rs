@@ -1,5 +1,6 @@
 //! `bn render`: images from sampling patterns.
 
+mod adaptive;
 mod reconstruction;
 mod reference;
 mod sampling;
@@ -92,6 +93,7 @@ pub(super) fn command() -> Command {
              bn render zone-plate --pattern fpo --spp 4 -o plate.png\n  \
              bn render checkerboard --pattern step.txt --spp 8 --reference 512 --error error.png -o board.png\n  \
              bn render zone-plate-limited --frequency 0.4 --pattern jittered --reconstruct act -o act.png\n  \
+             bn render sphere --pattern fpo --spp 4 --adaptive 0.01 --json -o sphere.png\n  \
              bn render photo.png --size 160x160 --pattern jittered --spp 16 --kernel mitchell -o small.exr",
             scenes.join("\n"),
             SUPERSAMPLING.join(", ")
@@ -110,15 +112,17 @@ pub(super) fn run(args: &Render, global: &Global) -> Outcome {
     let (done, image) = args.render(&subject, &sampling, &bar, targets.image.as_ref())?;
     let seconds = start.elapsed().as_secs_f64();
     drop(bar);
-    let stats = &done.stats;
     if let Some(fit) = &done.fit {
         reconstruction::remark(fit, global);
     }
-    if stats.empty_pixels > 0 {
+    if done.stats.empty_pixels > 0 {
         global.remark(format!(
             "{} pixels have no sample in reach; they take the scene's value nearby",
-            stats.empty_pixels
+            done.stats.empty_pixels
         ));
+    }
+    if let (Sampling::Adaptive(adaptive), Some(stats)) = (&sampling, &done.adaptive) {
+        adaptive.tell(stats, global);
     }
     let compared = match (&reference, &image) {
         (Some((reference, account)), Some(image)) => {
@@ -253,10 +257,7 @@ impl Render {
         global: &Global,
     ) -> Outcome<Option<(Image, Value)>> {
         let Some(reference) = &self.reference else { return Ok(None) };
-        let normalization = match sampling {
-            Sampling::Tiled(tiled) => tiled.normalization,
-            Sampling::Fitted(_) | Sampling::Periodic(_) => Normalization::Density,
-        };
+        let normalization = sampling.normalization().unwrap_or_default();
         reference.image(subject, self.sampling.kernel(), normalization, global).map(Some)
     }
 
@@ -277,14 +278,14 @@ impl Render {
         pattern: &Value,
     ) -> Value {
         let (frame, window) = (subject.frame, subject.frame.window());
-        let Done { stats, fit } = done;
-        let (reconstruct, normalization, weighted) = match sampling {
-            Sampling::Tiled(tiled) => {
-                (Some("convolution"), Some(tiled.normalization), tiled.pattern.is_weighted())
-            }
-            Sampling::Fitted(fitted) => (Some(fitted.name()), None, fitted.pattern.is_weighted()),
-            Sampling::Periodic(_) => (None, None, false),
+        let Done { stats, fit, .. } = done;
+        let (reconstruct, weighted) = match sampling {
+            Sampling::Tiled(tiled) => (Some("convolution"), tiled.pattern.is_weighted()),
+            Sampling::Fitted(fitted) => (Some(fitted.name()), fitted.pattern.is_weighted()),
+            Sampling::Adaptive(_) => (Some("convolution"), false),
+            Sampling::Periodic(_) => (None, false),
         };
+        let normalization = sampling.normalization();
         let mut account = json!({
             "scene": self.scene.scene,
             "width": window.width,
@@ -310,10 +311,14 @@ impl Render {
             // Equal images have no finite PSNR: null.
             "psnr": compared.map(|compared| peak_signal_to_noise(compared.mse)),
         });
-        if let (Some(account), Some(Value::Object(fit))) =
-            (account.as_object_mut(), fit.as_ref().map(reconstruction::account))
-        {
-            account.extend(fit);
+        let more = match (sampling, &done.adaptive) {
+            (Sampling::Adaptive(adaptive), Some(stats)) => {
+                Some(adaptive.account(stats, compared.map(|compared| compared.mse)))
+            }
+            _ => fit.as_ref().map(reconstruction::account),
+        };
+        if let (Some(account), Some(Value::Object(more))) = (account.as_object_mut(), more) {
+            account.extend(more);
         }
         account
     }

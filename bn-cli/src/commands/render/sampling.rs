@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use bn_core::{Observer, PointSet, Seed};
 use bn_render::{
-    BandLimitedStats, Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern, RenderError,
-    RenderStats, Renderer, SUPERSAMPLING, Scene, Supersampling, TileVariation,
+    AdaptiveStats, BandLimitedStats, Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern,
+    RenderError, RenderStats, Renderer, SUPERSAMPLING, Scene, Supersampling, TileVariation,
 };
 use bn_samplers::Method;
 use clap::builder::PossibleValuesParser;
@@ -15,6 +15,7 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::super::method_values::{given_values, only_set};
+use super::adaptive::{self, Adaptive, AdaptiveArgs};
 use super::reconstruction::{BandLimited, ReconstructionArgs};
 use super::scene::Subject;
 use crate::image_file::Rows;
@@ -57,6 +58,7 @@ pub(super) struct SamplingArgs {
     supersampling: Option<String>,
     #[command(flatten)]
     reconstruction: ReconstructionArgs,
+    adaptive: AdaptiveArgs,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -81,6 +83,8 @@ pub(super) enum Sampling {
     Fitted(Box<BandLimited>),
     /// Periodic supersampling.
     Periodic(Supersampling),
+    /// A pattern in layers, as dense as an error takes.
+    Adaptive(Box<Adaptive>),
 }
 
 /// What was done for an image.
@@ -89,6 +93,8 @@ pub(super) struct Done {
     pub(super) stats: RenderStats,
     /// How iterations went, if there were any.
     pub(super) fit: Option<BandLimitedStats>,
+    /// What adaptive sampling has to say beside.
+    pub(super) adaptive: Option<AdaptiveStats>,
 }
 
 /// A pattern laid over the image plane, and how its samples become pixels.
@@ -129,6 +135,15 @@ impl SamplingArgs {
         if fitted.is_some() && self.normalize.is_some() {
             return Err(Failure::misuse("--normalize concerns --reconstruct convolution only"));
         }
+        self.adaptive.check(self.spp)?;
+        if self.adaptive.is_wanted() && fitted.is_some() {
+            return Err(Failure::misuse("--adaptive goes with --reconstruct convolution only"));
+        }
+        if self.adaptive.is_wanted() && self.reconstruction.by_voronoi() {
+            return Err(Failure::misuse(
+                "--adaptive weighs samples alike: --weights voronoi does not go with it",
+            ));
+        }
         let name = self.pattern.as_deref().unwrap_or_default();
         let (set, account) = match bn_samplers::find(name) {
             Ok(method) => self.generated(method, bar)?,
@@ -140,8 +155,8 @@ impl SamplingArgs {
             Vary::Shift => TileVariation::Shifted(self.tile_seed()),
             Vary::Both => TileVariation::TurnedAndShifted(self.tile_seed()),
         };
-        let pattern = self.reconstruction.pattern(&set, self.spp)?.varied(variation);
         if let Some(options) = fitted {
+            let pattern = self.reconstruction.pattern(&set, self.spp)?.varied(variation);
             let fitted = BandLimited { pattern, kernel: self.kernel(), options };
             return Ok((Sampling::Fitted(Box::new(fitted)), account));
         }
@@ -150,12 +165,28 @@ impl SamplingArgs {
             Some(Normalize::Density) | None => Normalization::Density,
         };
         let table = KernelTable::new(self.kernel());
+        if self.adaptive.is_wanted() {
+            let adaptive = self.adaptive.sampling(
+                &set,
+                self.spp,
+                (self.layer_seed(), variation),
+                table,
+                normalization,
+            )?;
+            return Ok((Sampling::Adaptive(Box::new(adaptive)), account));
+        }
+        let pattern = self.reconstruction.pattern(&set, self.spp)?.varied(variation);
         Ok((Sampling::Tiled(Box::new(Tiled { pattern, table, normalization })), account))
     }
 
     /// The seed of what sets tiles apart, unlike that of any set.
     fn tile_seed(&self) -> Seed {
         Seed::new(self.seed).for_set(u32::MAX)
+    }
+
+    /// The seed of the shifts of an adaptive pattern's layers.
+    fn layer_seed(&self) -> Seed {
+        Seed::new(self.seed).for_set(u32::MAX - 1)
     }
 
     fn generated(&self, method: &'static Method, bar: &Bar) -> Outcome<(PointSet, Value)> {
@@ -223,6 +254,16 @@ impl Sampling {
             Self::Tiled(tiled) => tiled.pattern.samples_per_pixel(),
             Self::Fitted(fitted) => fitted.pattern.samples_per_pixel(),
             Self::Periodic(pattern) => pattern.samples_per_pixel() as f64,
+            Self::Adaptive(adaptive) => adaptive.pilot(),
+        }
+    }
+
+    /// How sums become pixels, where a kernel makes them.
+    pub(super) fn normalization(&self) -> Option<Normalization> {
+        match self {
+            Self::Tiled(tiled) => Some(tiled.normalization),
+            Self::Fitted(_) | Self::Periodic(_) => None,
+            Self::Adaptive(adaptive) => Some(adaptive.normalization),
         }
     }
 
@@ -236,21 +277,25 @@ impl Sampling {
         match self {
             Self::Tiled(tiled) => {
                 let stats = tiled.render(&*subject.scene, &subject.frame, observer, rows)?;
-                Ok(Done { stats, fit: None })
+                Ok(Done { stats, ..Done::default() })
             }
             Self::Fitted(fitted) => {
                 let (image, fit) = fitted.render(subject, observer)?;
                 rows(image.values())?;
                 let (samples, evaluated) = (fit.samples, fit.evaluated);
                 let stats = RenderStats { samples, evaluated, ..RenderStats::default() };
-                Ok(Done { stats, fit: Some(fit) })
+                Ok(Done { stats, fit: Some(fit), adaptive: None })
             }
             Self::Periodic(pattern) => {
                 let (image, samples) =
                     pattern.render(&*subject.scene, &subject.frame).map_err(Failure::usage)?;
                 rows(image.values())?;
                 let stats = RenderStats { samples, evaluated: samples, ..RenderStats::default() };
-                Ok(Done { stats, fit: None })
+                Ok(Done { stats, ..Done::default() })
+            }
+            Self::Adaptive(adaptive) => {
+                let stats = adaptive.render(subject, observer, rows)?;
+                Ok(Done { stats: adaptive::common(&stats), adaptive: Some(stats), fit: None })
             }
         }
     }
@@ -274,10 +319,14 @@ impl Tiled {
         rows: &mut Rows<'_>,
     ) -> Outcome<RenderStats> {
         let renderer = Renderer::new(scene, &self.pattern, &self.table, self.normalization, frame);
-        renderer.stream(observer, |band| rows(band.values)).map_err(|error| match error {
-            // The writer's own errors, among them a reader that went away, stay what they are.
-            RenderError::Output(error) => Failure::from(error),
-            other => Failure::failed(other),
-        })
+        renderer.stream(observer, |band| rows(band.values)).map_err(from_render_error)
+    }
+}
+
+/// The writer's own errors, among them a reader that went away, stay what they are.
+pub(super) fn from_render_error(error: RenderError) -> Failure {
+    match error {
+        RenderError::Output(error) => Failure::from(error),
+        other => Failure::failed(other),
     }
 }
