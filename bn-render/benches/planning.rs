@@ -1,0 +1,103 @@
+//! Adaptive sampling against uniform sampling of the same error, and what predictions cost.
+
+use std::hint::black_box;
+
+use bn_core::{DVec2, PointSet, Seed, Unobserved};
+use bn_render::{
+    AdaptiveRenderer, Channels, Checkerboard, Frame, Image, ImageSpectrum, KernelTable,
+    Normalization, Pattern, PatternPower, PlaneWave, PlaneWaves, Prediction, ProgressivePattern,
+    Renderer, Scene, SphereScene, kernel,
+};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use rand::RngExt;
+
+fn jittered(m: u32) -> PointSet {
+    let mut rng = Seed::new(1).stream(0);
+    let mut jitter = |i: u32| (f64::from(i) + rng.random::<f64>()) / f64::from(m);
+    let points = (0..m * m).map(|i| DVec2::new(jitter(i % m), jitter(i / m)));
+    PointSet::wrapped(points.collect()).expect("valid points")
+}
+
+/// A scene that keeps what it knows to itself.
+struct Silent<S>(S);
+
+impl<S: Scene> Scene for Silent<S> {
+    fn channels(&self) -> Channels {
+        self.0.channels()
+    }
+    fn values(&self, u: &[f64], v: &[f64], out: &mut [f64]) {
+        self.0.values(u, v, out);
+    }
+}
+
+fn adaptive(c: &mut Criterion) {
+    let frame = Frame::new(512, 512).expect("a size");
+    let table = KernelTable::new(kernel("lanczos2").expect("a kernel"));
+    let set = jittered(64);
+    let progressive = ProgressivePattern::new(&set, 4.0, 1024.0, Seed::new(1)).expect("rates");
+    let board = Silent(Checkerboard::new(&frame, 0.5, 12.0, 0.5));
+    let sphere = Silent(SphereScene::new(&frame, 1.0));
+    let scenes: [(&str, &dyn Scene); 2] = [("half-constant", &board), ("sphere", &sphere)];
+    for (name, scene) in scenes {
+        let mut group = c.benchmark_group(format!("adaptive-{name}"));
+        group.sample_size(10);
+        let how = Normalization::Density;
+        let renderer = AdaptiveRenderer::new(scene, &progressive, &table, how, &frame, 0.02);
+        let samples = renderer.image().expect("small").1.samples;
+        group.throughput(Throughput::Elements(samples));
+        group.bench_function("adaptive", |b| {
+            b.iter(|| {
+                let stats = renderer.stream(&Unobserved, |band| {
+                    black_box(band.values);
+                    Ok(())
+                });
+                stats.expect("nothing can fail").samples
+            });
+        });
+        // As many samples, evenly.
+        let pattern = Pattern::tiled(&set, samples as f64 / (512.0 * 512.0)).expect("a rate");
+        let uniform = Renderer::new(scene, &pattern, &table, how, &frame);
+        group.bench_function("uniform", |b| {
+            b.iter(|| {
+                let stats = uniform.stream(&Unobserved, |band| {
+                    black_box(band.values);
+                    Ok(())
+                });
+                stats.expect("nothing can fail").samples
+            });
+        });
+        group.finish();
+    }
+}
+
+fn prediction(c: &mut Criterion) {
+    let sets = [jittered(64)];
+    let lanczos = kernel("lanczos2").expect("a kernel");
+    let mut group = c.benchmark_group("prediction");
+    group.sample_size(20);
+    group.bench_function("spectrum-256", |b| {
+        b.iter(|| PatternPower::of(black_box(&sets), 256).expect("small"));
+    });
+    let power = PatternPower::of(&sets, 256).expect("small");
+    let prediction = Prediction::new(&power, 4.0).expect("a rate");
+    let frequency = DVec2::new(0.3, 0.2);
+    let wave = PlaneWave { amplitude: 0.5, frequency, phase_turns: 0.0 };
+    let wave = ImageSpectrum::of_waves(&PlaneWaves::new(0.5, vec![wave]));
+    group.bench_function("noise-of-a-wave", |b| {
+        b.iter(|| prediction.noise(black_box(&wave), lanczos));
+    });
+    for side in [32, 128] {
+        let frame = Frame::new(side, side).expect("a size");
+        let values = (0..side * side).map(|i| ((i * 7919) % 1009) as f32 / 1009.0).collect();
+        let image = Image::new(side, side, Channels::Grey, values).expect("an image");
+        let spectrum = ImageSpectrum::of_image(&image, &frame).expect("small");
+        group.throughput(Throughput::Elements(u64::from(side * side)));
+        group.bench_with_input(BenchmarkId::new("noise-of-an-image", side), &spectrum, |b, s| {
+            b.iter(|| prediction.noise(black_box(s), lanczos));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, adaptive, prediction);
+criterion_main!(benches);
