@@ -1,10 +1,11 @@
-//! The project's own tasks: `cargo xtask tables`, `figures`, `bench` and `ci`.
+//! The project's own tasks: `cargo xtask tables`, `figures`, `report`, `bench` and `ci`.
 
 mod bench;
 mod ci;
 mod figures;
 mod markdown;
 mod measure;
+mod report;
 mod tables;
 mod thesis;
 mod workspace;
@@ -31,6 +32,7 @@ struct Cli {
 enum Task {
     Tables(tables::TablesArgs),
     Figures(figures::FiguresArgs),
+    Report(report::ReportArgs),
     Bench(bench::BenchArgs),
     Ci(ci::CiArgs),
 }
@@ -64,6 +66,7 @@ fn run(cli: &Cli) -> Outcome {
     match &cli.task {
         Task::Tables(args) => tables::run(args),
         Task::Figures(args) => figures::run(args),
+        Task::Report(args) => report::run(args),
         Task::Bench(args) => bench::run(args),
         Task::Ci(args) => ci::run(args),
     }

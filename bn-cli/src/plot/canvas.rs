@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::encode::base64;
+use super::encode::data_uri;
 use super::text::{Text, escape};
 
 /// A rectangle in page coordinates, y downwards.
@@ -149,12 +149,12 @@ impl Canvas {
             self.shapes,
             "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
              image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\" \
-             href=\"data:image/png;base64,{}\"/>",
+             href=\"{}\"/>",
             number(rect.x, 4),
             number(rect.y, 4),
             number(rect.width, 4),
             number(rect.height, 4),
-            base64(png)
+            data_uri("image/png", png)
         );
     }
 

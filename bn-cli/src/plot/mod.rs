@@ -40,6 +40,7 @@ mod ticks;
 
 pub use axis::Axis;
 pub use dots::Dots;
+pub use encode::data_uri;
 pub use page::{Page, Row};
 pub use panel::{Panel, Reference};
 pub use picture::{Grid, Picture};

@@ -63,7 +63,7 @@ impl Page {
         Self { title, provenance: String::new(), density: 4.0, blocks: vec![] }
     }
 
-    /// The page with a heading.
+    /// The page with a heading, broken into lines of the page's width.
     #[must_use]
     pub fn titled(mut self, title: Text) -> Self {
         self.title = title;
@@ -142,10 +142,12 @@ impl Page {
         let mut canvas = Canvas::default();
         let mut y = BORDER;
         if !self.title.is_empty() {
-            let title = self.title.clone().shortened(sizes::HEADING, width);
-            let at = (BORDER + 0.5 * width, y + 0.8 * sizes::HEADING);
-            canvas.text(at, &title, TextStyle::new(sizes::HEADING, Anchor::Middle));
-            y += sizes::HEADING + 0.6 * BLOCK_GAP;
+            for line in self.title.wrapped(sizes::HEADING, width) {
+                let at = (BORDER + 0.5 * width, y + 0.8 * sizes::HEADING);
+                canvas.text(at, &line, TextStyle::new(sizes::HEADING, Anchor::Middle));
+                y += 1.2 * sizes::HEADING;
+            }
+            y += 0.6 * BLOCK_GAP - 0.2 * sizes::HEADING;
         }
         for (i, block) in self.blocks.iter().enumerate() {
             y += if i == 0 { 0.0 } else { BLOCK_GAP };

@@ -59,6 +59,8 @@ const MINOR_TICK: f64 = 1.5;
 const LABEL_GAP: f64 = 4.0;
 /// What an axis's label takes off the tick labels, its subscripts included.
 const NAME_ROOM: f64 = 1.5 * sizes::LABEL;
+/// Between the lines of a title.
+const TITLE_LEADING: f64 = 1.15 * sizes::TITLE;
 
 /// Space that a panel needs around its frame.
 #[derive(Clone, Copy, Debug, Default)]
@@ -85,7 +87,7 @@ impl Panel {
         }
     }
 
-    /// The panel with a title above its frame.
+    /// The panel with a title above its frame, broken into lines where it is wider.
     #[must_use]
     pub fn titled(mut self, title: Text) -> Self {
         self.title = title;
@@ -151,9 +153,20 @@ impl Panel {
         let outside = legend.map_or(0.0, |place| place.right() - frame.right() + 1.0);
         Margins {
             right: margins.right.max(outside),
-            top: if self.title.is_empty() { 0.45 * sizes::TICK } else { 1.55 * sizes::TITLE },
+            top: match self.title_lines(frame.width).len() {
+                0 => 0.45 * sizes::TICK,
+                lines => 1.55 * sizes::TITLE + (lines - 1) as f64 * TITLE_LEADING,
+            },
             ..margins
         }
+    }
+
+    /// The title broken into lines that stand out over the frame by a twentieth of it at most.
+    fn title_lines(&self, frame_width: f64) -> Vec<Text> {
+        if self.title.is_empty() {
+            return vec![];
+        }
+        self.title.wrapped(sizes::TITLE, 1.1 * frame_width)
     }
 
     /// Draws the panel around `frame`, images at `density` pixels a point.
@@ -174,9 +187,11 @@ impl Panel {
         canvas.rect(frame, "none", FRAME);
         layout.draw_axes(canvas);
         self.draw_legend(canvas, frame);
-        let middle = (frame.x + 0.5 * frame.width, frame.y - 0.55 * sizes::TITLE);
-        let title = self.title.clone().shortened(sizes::TITLE, 1.1 * frame.width);
-        canvas.text(middle, &title, TextStyle::new(sizes::TITLE, Anchor::Middle));
+        let middle = frame.x + 0.5 * frame.width;
+        for (above, line) in self.title_lines(frame.width).iter().rev().enumerate() {
+            let y = frame.y - 0.55 * sizes::TITLE - above as f64 * TITLE_LEADING;
+            canvas.text((middle, y), line, TextStyle::new(sizes::TITLE, Anchor::Middle));
+        }
     }
 
     /// Draws the legend where [`Panel::margins`] has found the place: the search is repeated with

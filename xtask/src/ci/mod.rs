@@ -9,10 +9,10 @@ use std::time::Instant;
 use bn_cli::{Failure, Outcome};
 use clap::Args;
 
-use crate::{bench, figures, tables, workspace};
+use crate::{bench, figures, report, tables, workspace};
 use process::cargo;
 
-/// Format, lints, documentation, quick tables, benches and figures, examples, the commands in the
+/// Format, lints, documentation, quick tables, benches, figures and report, examples, the commands in the
 /// documentation, and the tests; stops at the first that fails
 #[derive(Debug, Args)]
 pub(crate) struct CiArgs {
@@ -24,7 +24,7 @@ pub(crate) struct CiArgs {
 /// A step: what it is called and what it does.
 type Step = (&'static str, fn() -> Outcome);
 
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 10] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[])),
     ("clippy", || {
         let what = ["clippy", "--workspace", "--all-targets", "--all-features"];
@@ -43,6 +43,7 @@ const STEPS: [Step; 9] = [
     ("quick tables", || tables::run(&tables::TablesArgs::for_ci())),
     ("quick benches", || bench::run(&bench::BenchArgs::for_ci())),
     ("quick figures", || figures::run(&figures::FiguresArgs::for_ci())),
+    ("quick report", || report::run(&report::ReportArgs::for_ci())),
     ("examples", examples::run),
     ("commands in the documentation", readme::run),
 ];

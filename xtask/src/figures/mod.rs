@@ -20,6 +20,7 @@ mod supersampling;
 mod test_scenes;
 mod zone_plates;
 
+use std::path::PathBuf;
 use std::time::Instant;
 
 use bn_cli::{Failure, Outcome};
@@ -84,18 +85,47 @@ pub(crate) fn run(args: &FiguresArgs) -> Outcome {
             Ok(())
         });
     }
-    let folder = workspace::root()?.join("target/thesis");
-    for figure in figures {
-        let start = Instant::now();
-        (figure.draw)(&Studio::new(&folder, figure.id, args.quick)?)?;
-        eprintln!(
-            "figure {}: {:.1} s ({})",
-            figure.id,
-            start.elapsed().as_secs_f64(),
-            figure.title
-        );
-    }
+    figures.into_iter().try_for_each(|figure| draw(figure, args.quick))
+}
+
+fn draw(figure: &FigureSpec, quick: bool) -> Outcome {
+    let start = Instant::now();
+    let studio = figure.studio(quick)?;
+    (figure.draw)(&studio)?;
+    studio.finish()?;
+    let seconds = start.elapsed().as_secs_f64();
+    eprintln!("figure {}: {seconds:.1} s ({})", figure.id, figure.title);
     Ok(())
+}
+
+impl FigureSpec {
+    fn studio(&self, quick: bool) -> Outcome<Studio> {
+        Studio::new(&workspace::root()?.join("target/thesis"), self.id, quick)
+    }
+}
+
+/// A figure with its pages' files.
+pub(crate) struct Drawn {
+    pub(crate) id: &'static str,
+    pub(crate) title: &'static str,
+    pub(crate) files: Vec<PathBuf>,
+}
+
+/// All figures; those that have been drawn are not drawn again unless `fresh`.
+pub(crate) fn drawn(quick: bool, fresh: bool) -> Outcome<Vec<Drawn>> {
+    let one = |figure: &'static FigureSpec| {
+        let studio = figure.studio(quick)?;
+        let kept = if fresh { None } else { studio.finished() };
+        let files = match kept {
+            Some(files) => files,
+            None => {
+                draw(figure, quick)?;
+                studio.finished().unwrap_or_default()
+            }
+        };
+        Ok(Drawn { id: figure.id, title: figure.title, files })
+    };
+    select(&[])?.into_iter().map(one).collect()
 }
 
 /// The figures asked for; all if none is named.

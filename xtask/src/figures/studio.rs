@@ -1,5 +1,6 @@
 //! Where figures are drawn: their points, their files.
 
+use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -7,6 +8,7 @@ use anyhow::Context as _;
 use bn_cli::plot::Page;
 use bn_cli::{Failure, Outcome, output};
 use bn_core::PointSet;
+use serde_json::{Value, json};
 
 use crate::measure::{Plan, Store, make};
 use crate::thesis::RowSpec;
@@ -18,6 +20,8 @@ pub(crate) struct Studio {
     id: &'static str,
     store: Store,
     quick: bool,
+    /// The names of the pages' files.
+    pages: RefCell<Vec<String>>,
 }
 
 impl Studio {
@@ -28,7 +32,8 @@ impl Studio {
         fs::create_dir_all(&folder)
             .with_context(|| format!("cannot make {}", folder.display()))
             .map_err(Failure::failed)?;
-        Ok(Self { folder, id, store: Store::new(thesis.join("points"), true), quick })
+        let (store, pages) = (Store::new(thesis.join("points"), true), RefCell::default());
+        Ok(Self { folder, id, store, quick, pages })
     }
 
     /// Whether a small version will do: the figure must be drawn, not say anything.
@@ -72,14 +77,29 @@ impl Studio {
     /// Writes a page of the figure as SVG, and as PNG beside it with the feature `png`.
     pub(crate) fn page(&self, part: &str, page: &Page) -> Outcome {
         let page = page.clone().made_by(&self.provenance());
-        let svg = page.to_svg();
-        output::write_file(&self.place(part, "svg"), |w| Ok(w.write_all(svg.as_bytes())?))?;
+        let (svg, place) = (page.to_svg(), self.place(part, "svg"));
+        output::write_file(&place, |w| Ok(w.write_all(svg.as_bytes())?))?;
+        let name = place.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        self.pages.borrow_mut().push(name);
         #[cfg(feature = "png")]
         {
             let png = page.to_png().map_err(Failure::failed)?;
             output::write_file(&self.place(part, "png"), |w| Ok(w.write_all(&png)?))?;
         }
         Ok(())
+    }
+
+    /// Notes that the figure is complete, and its pages.
+    pub(super) fn finish(&self) -> Outcome {
+        let pages = json!({ "made_by": self.provenance(), "pages": *self.pages.borrow() });
+        output::write_file(&self.place("", "json"), |w| Ok(writeln!(w, "{pages:#}")?))
+    }
+
+    /// The files of the figure's pages, if all have been drawn and are there.
+    pub(super) fn finished(&self) -> Option<Vec<PathBuf>> {
+        let noted: Value = serde_json::from_slice(&fs::read(self.place("", "json")).ok()?).ok()?;
+        let page = |name: &Value| Some(self.folder.join(name.as_str()?)).filter(|p| p.exists());
+        noted["pages"].as_array()?.iter().map(page).collect()
     }
 }
 
@@ -97,6 +117,21 @@ mod tests {
         studio.page("", &Page::new()).expect("written");
         let text = fs::read_to_string(studio.place("", "svg")).expect("there");
         assert!(text.contains("cargo xtask figures --only 4.6"), "{text}");
+    }
+
+    #[test]
+    fn a_figure_is_complete_when_it_says_so_and_its_pages_are_there() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let studio = Studio::new(folder.path(), "4.6", true).expect("writable");
+        for part in ["b", "a"] {
+            studio.page(part, &Page::new()).expect("written");
+        }
+        assert_eq!(studio.finished(), None);
+        studio.finish().expect("written");
+        let pages = ["b", "a"].map(|part| studio.place(part, "svg"));
+        assert_eq!(studio.finished().as_deref(), Some(&pages[..]));
+        fs::remove_file(&pages[1]).expect("there");
+        assert_eq!(studio.finished(), None);
     }
 
     #[test]

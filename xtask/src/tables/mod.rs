@@ -15,9 +15,10 @@ mod table_5_3;
 mod write;
 
 use std::collections::BTreeSet;
+use std::fs;
 use std::path::PathBuf;
 
-use bn_cli::{Failure, Outcome};
+use bn_cli::{Failure, Outcome, output};
 use clap::Args;
 
 use crate::measure::{Plan, Store, Workbench};
@@ -96,36 +97,88 @@ impl TablesArgs {
 /// What `--quick` makes.
 const QUICK: Plan = Plan { n: 1024, sets: 2, seed: 1 };
 
+/// What the thesis's tables were made from.
+const FULL: Plan = Plan { n: 4096, sets: 10, seed: 1 };
+
 pub(crate) fn run(args: &TablesArgs) -> Outcome {
     if let Some(runs) = args.record_quick {
         return quick::record(runs);
     }
     let wanted = select(args.table.as_deref())?;
-    let folder = workspace::root()?.join("target/thesis");
-    let rows = Rows::load()?;
-    let (judge, workbench, folder) = if args.quick {
-        let bench = Workbench::new(QUICK, quantities(&wanted));
-        (Judge::for_quick()?, bench, folder.join("quick"))
+    let workshop = if args.quick {
+        Workshop::quick(&wanted)?
     } else {
         let plan = Plan { n: args.n as usize, sets: args.sets, seed: 1 };
-        let bench = Workbench::new(plan, quantities(&wanted)).keeping(
-            Store::new(folder.join("points"), !args.fresh),
-            folder.join(format!("curves/n{}_sets{}", plan.n, plan.sets)),
-        );
-        (Judge::for_thesis(plan.n, plan.sets)?, bench, folder)
+        Workshop::new(plan, &wanted, args.fresh)?
     };
-    let context = Context { rows: &rows, judge: &judge, workbench: &workbench };
     let mut tables = Vec::new();
     for spec in wanted {
-        let table = (spec.make)(spec, &context)?;
-        write::table(&folder, &table, workbench.plan())?;
+        let (table, text) = workshop.make(spec)?;
+        output::write_stdout(|w| Ok(writeln!(w, "{text}")?))?;
         tables.push(table);
     }
-    write::json(&folder.join("tables.json"), &tables, workbench.plan())?;
+    let plan = workshop.workbench.plan();
+    write::json(&workshop.folder.join("tables.json"), &tables, plan)?;
     if let Some(path) = &args.json {
-        write::json(path, &tables, workbench.plan())?;
+        write::json(path, &tables, plan)?;
     }
     verdict(&tables)
+}
+
+/// The texts of all tables by their numbers. Those that are written down are not made again, unless
+/// `fresh`.
+pub(crate) fn texts(quick: bool, fresh: bool) -> Outcome<Vec<(&'static str, String)>> {
+    let folder = folder(quick)?;
+    let kept = |spec: &TableSpec| fs::read_to_string(write::place(&folder, spec.id)).ok();
+    let is_missing = |spec: &&TableSpec| fresh || kept(spec).is_none();
+    let missing: Vec<_> = TABLES.iter().filter(is_missing).collect();
+    let workshop =
+        if quick { Workshop::quick(&missing)? } else { Workshop::new(FULL, &missing, false)? };
+    let text = |spec: &'static TableSpec| match kept(spec).filter(|_| !fresh) {
+        Some(text) => Ok((spec.id, text)),
+        None => Ok((spec.id, workshop.make(spec)?.1)),
+    };
+    TABLES.iter().map(text).collect()
+}
+
+/// Makes tables and keeps them in a folder.
+struct Workshop {
+    rows: Rows,
+    judge: Judge,
+    workbench: Workbench,
+    folder: PathBuf,
+}
+
+/// Where tables are kept.
+fn folder(quick: bool) -> Outcome<PathBuf> {
+    Ok(workspace::root()?.join(if quick { "target/thesis/quick" } else { "target/thesis" }))
+}
+
+impl Workshop {
+    /// For the quick forms of `tables`; point sets are not kept.
+    fn quick(tables: &[&TableSpec]) -> Outcome<Self> {
+        let workbench = Workbench::new(QUICK, quantities(tables));
+        Ok(Self { rows: Rows::load()?, judge: Judge::for_quick()?, workbench, folder: folder(true)? })
+    }
+
+    /// For `tables` by a plan; `fresh` makes point sets again that are kept.
+    fn new(plan: Plan, tables: &[&TableSpec], fresh: bool) -> Outcome<Self> {
+        let folder = folder(false)?;
+        let workbench = Workbench::new(plan, quantities(tables)).keeping(
+            Store::new(folder.join("points"), !fresh),
+            folder.join(format!("curves/n{}_sets{}", plan.n, plan.sets)),
+        );
+        let judge = Judge::for_thesis(plan.n, plan.sets)?;
+        Ok(Self { rows: Rows::load()?, judge, workbench, folder })
+    }
+
+    /// Makes a table and writes it down; its text as well.
+    fn make(&self, spec: &TableSpec) -> Outcome<(Table, String)> {
+        let Self { rows, judge, workbench, folder } = self;
+        let table = (spec.make)(spec, &Context { rows, judge, workbench })?;
+        let text = write::table(folder, &table, workbench.plan())?;
+        Ok((table, text))
+    }
 }
 
 /// The tables asked for.

@@ -1,7 +1,7 @@
-//! Tables on standard output and as files.
+//! Tables as files.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use bn_cli::{Failure, Outcome, output};
@@ -10,17 +10,20 @@ use serde_json::json;
 use super::{Table, markdown};
 use crate::measure::Plan;
 
-/// Prints the table and writes it as Markdown into `folder`.
-pub(super) fn table(folder: &Path, table: &Table, plan: Plan) -> Outcome {
+/// Where the table `id` is kept as Markdown.
+pub(super) fn place(folder: &Path, id: &str) -> PathBuf {
+    folder.join(match id {
+        "B" => "appendix_b.md".to_owned(),
+        _ => format!("table_{}.md", id.replace('.', "_")),
+    })
+}
+
+/// Writes the table as Markdown into `folder`; the text.
+pub(super) fn table(folder: &Path, table: &Table, plan: Plan) -> Outcome<String> {
     let text = markdown::render(table, plan);
-    let name = if table.id == "B" {
-        "appendix_b.md".to_owned()
-    } else {
-        format!("table_{}.md", table.id.replace('.', "_"))
-    };
     make_folder(folder)?;
-    output::write_file(&folder.join(name), |w| Ok(w.write_all(text.as_bytes())?))?;
-    output::write_stdout(|w| Ok(writeln!(w, "{text}")?))
+    output::write_file(&place(folder, table.id), |w| Ok(w.write_all(text.as_bytes())?))?;
+    Ok(text)
 }
 
 /// Writes the tables as one JSON object.
