@@ -12,6 +12,7 @@ mod nufft;
 mod optimizers;
 mod rendering;
 mod samplers;
+mod skipping;
 mod timing;
 
 use std::fs;
@@ -35,7 +36,7 @@ pub(crate) struct BenchArgs {
     #[arg(long)]
     quick: bool,
     /// Only this chapter: bessel, hankel, bessel-sums, nufft, estimators, samplers, optimizers,
-    /// matching, imitations or rendering
+    /// matching, imitations, rendering or skipping
     #[arg(long, value_name = "CHAPTER")]
     only: Option<String>,
 }
@@ -60,7 +61,7 @@ const SEED: u64 = 1;
 type Measure = fn(Effort) -> Outcome<Chapter>;
 
 /// The chapters, in the order in which data flow.
-const CHAPTERS: [(&str, Measure); 10] = [
+const CHAPTERS: [(&str, Measure); 11] = [
     ("bessel", bessel::measure),
     ("hankel", hankel::measure),
     ("bessel-sums", bessel_sums::measure),
@@ -71,6 +72,7 @@ const CHAPTERS: [(&str, Measure); 10] = [
     ("matching", matching::measure),
     ("imitations", imitations::measure),
     ("rendering", rendering::measure),
+    ("skipping", skipping::measure),
 ];
 
 pub(crate) fn run(args: &BenchArgs) -> Outcome {

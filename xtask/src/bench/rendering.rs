@@ -64,7 +64,7 @@ pub(super) fn measure(effort: Effort) -> Outcome<Chapter> {
     let diagram = |title: &str, curves: &[Curve]| Diagram {
         title: title.to_owned(),
         x: "time / s",
-        y: "rms error",
+        y: "PSNR / dB",
         curves: curves.to_vec(),
     };
     let mut diagrams: Vec<_> =
@@ -99,7 +99,7 @@ struct Case<'a> {
     reference: &'a Image,
 }
 
-/// Seconds and root mean square errors at all rates; a row for each.
+/// Seconds and PSNR at all rates; a row for each.
 fn curve(
     case: &Case<'_>,
     name: &str,
@@ -118,16 +118,17 @@ fn curve(
             black_box(renderer.image().is_ok());
         });
         let mse = mean_square_error(&image, case.reference).map_err(Failure::failed)?;
+        let psnr = peak_signal_to_noise(mse);
         rows.push(vec![
             case.pattern.into(),
             case.kernel.name().into(),
             rate.into(),
             timing.seconds.into(),
             (stats.samples as f64 / timing.seconds).into(),
-            peak_signal_to_noise(mse).into(),
+            psnr.into(),
             timing.runs.into(),
         ]);
-        points.push([timing.seconds, mse.sqrt()]);
+        points.push([timing.seconds, psnr]);
     }
     Ok(Curve { name: name.to_owned(), points })
 }

@@ -23,12 +23,18 @@ impl Exhibit {
 const PIXEL: f64 = 0.5;
 const ENLARGED: f64 = 1.0;
 
-/// Rows of images, those of a row all of one height; each pixel of an image is one of the PNG.
+/// Images are shown at least so many pixels high, so that their titles have room.
+const LEAST_HEIGHT: u32 = 200;
+
+/// Rows of images, those of a row all of one height; each pixel of an image is one of the PNG, or a
+/// square of several if the images are small.
 pub(super) fn hang(title: &str, rows: Vec<Vec<Exhibit>>) -> Page {
     let page = Page::new().titled(Text::math(title)).with_density(ENLARGED / PIXEL);
+    let height = |row: &[Exhibit]| row.iter().map(|e| e.image.height()).max().unwrap_or(1);
+    let least = rows.iter().map(|row| height(row)).min().unwrap_or(1);
+    let pixel = PIXEL * f64::from(LEAST_HEIGHT.div_ceil(least));
     rows.into_iter().fold(page, |page, row| {
-        let height = row.iter().map(|exhibit| exhibit.image.height()).max().unwrap_or(1);
-        page.row(Row::new(PIXEL * f64::from(height), row.iter().map(panel).collect()))
+        page.row(Row::new(pixel * f64::from(height(&row)), row.iter().map(panel).collect()))
     })
 }
 

@@ -139,10 +139,12 @@ fn spectra(studio: &Studio) -> Outcome {
         let data = analysis.report_data(method.to_owned(), studio.provenance(), range);
         let spectrum = &data.spectrum;
         let pixels = |cells: usize| cells.min(report::MOST_CELLS) as u32;
-        let side = |[low, high]: [f64; 2]| Axis::linear(Text::math("*ν*/(√*n*/2)")).over(low, high);
+        let side = |name: &str, [low, high]: [f64; 2]| {
+            Axis::linear(Text::math(&format!("{name}/(√*n*/2)"))).over(low, high)
+        };
         let picture =
             spectrum.to_picture(pixels(spectrum.columns()), pixels(spectrum.rows()), report::WHITE);
-        let power = Panel::new(side(spectrum.x()), side(spectrum.y()))
+        let power = Panel::new(side("*ν*_{x}", spectrum.x()), side("*ν*_{y}", spectrum.y()))
             .titled(Text::plain(&format!("{method}: power spectrum")))
             .picture(picture);
         let frequency = || Axis::linear(Text::math("*ν*/(√*n*/2)")).over(0.0, 6.0);

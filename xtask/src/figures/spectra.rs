@@ -44,9 +44,11 @@ fn row(data: &ReportData) -> Row {
     let spectrum = Panel::new(axis("x"), axis("y"))
         .titled(Text::plain("power spectrum"))
         .picture(grid.to_picture(pixels.0, pixels.1, WHITE));
+    // From 0 on and not closer than this, so that what is white noise looks white.
+    let highest = data.radial_power.values().iter().copied().fold(2.0, f64::max);
     let radial = Panel::new(
         Axis::linear(Text::math("*ν*/(√*n*/2)")).over(0.0, RANGE),
-        Axis::linear(Text::plain("power")),
+        Axis::linear(Text::plain("power")).over(0.0, 1.05 * highest),
     )
     .with_aspect(1.6)
     .line(Series::of_curve(&data.radial_power));

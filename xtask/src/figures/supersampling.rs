@@ -52,8 +52,8 @@ fn page(studio: &Studio, names: &[&str]) -> Outcome {
             vec![taps(&pattern), transfer(&pattern)?, section(&pattern), resampled(&image)?],
         ));
     }
-    let caption = "Left: the samples of a pixel (its square is dashed), filled where the weight is \
-                   positive. Then the MTF over ±4 *ν*_{c}, black 0, white 1: what lies outside the \
+    let caption = "Left: the samples of a pixel (its square is dashed), round where the weight is \
+                   positive, square where it is negative. Then the MTF over ±4 *ν*_{c}, black 0, white 1: what lies outside the \
                    dashed square of the Nyquist region folds back onto it from the blocks around. \
                    Third: the MTF along the axis and the diagonal. Right: the 512² test image at 128².";
     studio.page("", &page.paragraph(Text::math(caption)))
@@ -110,7 +110,7 @@ fn section(pattern: &Supersampling) -> Panel {
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
     Panel::new(
         Axis::linear(Text::math("*ν*/*ν*_{c}")).over(0.0, 4.0),
-        Axis::linear(Text::plain("MTF")).over(0.0, 1.25),
+        Axis::linear(Text::plain("MTF")).over(0.0, 1.4),
     )
     .reference(Reference::vertical(1.0))
     .line(Series::new(along(1.0, 0.0)).named(Text::plain("axis")).styled(Style::Cycle(0)))

@@ -1,7 +1,9 @@
 //! Zone plates: what patterns do to all frequencies at once (figures 2.5, 3.7, 5.8, 5.9).
 
 use bn_cli::{Failure, Outcome};
-use bn_render::{Frame, Image, LimitedZonePlate, Scene, Window, ZonePlate};
+use bn_render::{
+    Frame, Image, LimitedZonePlate, Scene, Window, ZonePlate, error_picture, exact_convolution,
+};
 
 use super::FigureSpec;
 use super::gallery::{Exhibit, hang, rendered};
@@ -98,9 +100,17 @@ fn low(studio: &Studio) -> Outcome {
     let corner =
         Window { x: side(studio), y: side(studio), width: side(studio), height: side(studio) };
     let corner = frame.cropped(corner).map_err(Failure::failed)?;
-    let methods = [("step", "step blue noise"), ("dart-throwing", "dart throwing")];
+    let exact = bn_render::kernel("lanczos2").expect("in the list");
+    let exact = exact_convolution(&plate, exact, &corner, 1e-4).map_err(Failure::failed)?.image;
+    let (mut images, mut errors) = (Vec::new(), Vec::new());
+    for (method, label) in [("step", "step blue noise"), ("dart-throwing", "dart throwing")] {
+        let image = sampled(studio, method, &[], &plate, &corner, 1.0)?;
+        let error = error_picture(&image, &exact, 4.0).map_err(Failure::failed)?;
+        images.push(Exhibit::new(label, image));
+        errors.push(Exhibit::new("error, four times", error));
+    }
     let title = "1 spp, the centre in the upper left corner, up to 0.35 cycles per pixel";
-    pairs(studio, title, &methods, &plate, &corner, 1.0)
+    studio.page("", &hang(title, vec![images, errors]))
 }
 
 fn high(studio: &Studio) -> Outcome {

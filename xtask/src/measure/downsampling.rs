@@ -27,12 +27,24 @@ const REFERENCE: f64 = 512.0;
 /// The seed of the shifts that tell the images of one set apart.
 const SHIFTS: u64 = 1;
 
-/// The large image, the kernel and the reference.
+/// The large image, the kernel and what renderings are held against.
 pub(crate) struct Downsampling {
     picture: Picture,
     frame: Frame,
     kernel: KernelTable,
+    /// The thesis's reference.
     reference: Image,
+    /// What samples without end would give.
+    exact: Convolution,
+}
+
+/// PSNR of one rendering.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Psnr {
+    /// Against the thesis's reference.
+    pub(crate) value: f64,
+    /// Against the convolution by quadrature.
+    pub(crate) exact: f64,
 }
 
 impl Downsampling {
@@ -44,23 +56,25 @@ impl Downsampling {
         let once = bn_render::supersampling("none").expect("in the list");
         let (image, _) = Supersampling::render(&once, &scene, &large).map_err(Failure::failed)?;
         let picture = Picture::covering(image, Interpolation::Bilinear, &frame);
-        let kernel = KernelTable::new(bn_render::kernel("lanczos2").expect("in the list"));
+        let lanczos = bn_render::kernel("lanczos2").expect("in the list");
+        let exact = exact_convolution(&picture, lanczos, &frame, 1e-7).map_err(Failure::failed)?;
+        let kernel = KernelTable::new(lanczos);
         let lattice = Hexagonal.sample(4096, Seed::new(1), &Unobserved).map_err(Failure::failed)?;
         let pattern = Pattern::tiled(&lattice.points, REFERENCE).map_err(Failure::failed)?;
         let renderer = Renderer::new(&picture, &pattern, &kernel, Normalization::Density, &frame);
         let reference = renderer.image().map_err(Failure::failed)?.0;
-        Ok(Self { picture, frame, kernel, reference })
+        Ok(Self { picture, frame, kernel, reference, exact })
     }
 
-    /// PSNR of the image of number `index` from these points against the reference. Images of
-    /// different numbers have the points shifted differently on the torus.
+    /// PSNR of the image of number `index` from these points. Images of different numbers have the
+    /// points shifted differently on the torus.
     pub(crate) fn psnr(
         &self,
         set: &PointSet,
         index: u32,
         samples_per_pixel: f64,
         normalization: Normalization,
-    ) -> Outcome<f64> {
+    ) -> Outcome<Psnr> {
         let mut rng = Seed::new(SHIFTS).stream(index);
         let shift = DVec2::new(rng.random(), rng.random());
         let shifted = PointSet::wrapped(set.points().iter().map(|p| *p + shift).collect());
@@ -69,16 +83,22 @@ impl Downsampling {
         let renderer =
             Renderer::new(&self.picture, &pattern, &self.kernel, normalization, &self.frame);
         let image = renderer.image().map_err(Failure::failed)?.0;
-        let mse = mean_square_error(&image, &self.reference).map_err(Failure::failed)?;
-        Ok(peak_signal_to_noise(mse))
+        Ok(Psnr { value: psnr(&image, &self.reference)?, exact: psnr(&image, &self.exact.image)? })
     }
 
-    /// PSNR of the reference itself against the convolution by quadrature.
+    /// PSNR of the reference itself against the convolution by quadrature: more than this no
+    /// pattern can have, however many samples it takes.
     pub(crate) fn reference_psnr(&self) -> Outcome<f64> {
-        let kernel = bn_render::kernel(self.kernel.name()).expect("in the list");
-        let Convolution { image, .. } =
-            exact_convolution(&self.picture, kernel, &self.frame, 1e-7).map_err(Failure::failed)?;
-        let mse = mean_square_error(&image, &self.reference).map_err(Failure::failed)?;
-        Ok(peak_signal_to_noise(mse))
+        psnr(&self.reference, &self.exact.image)
     }
+
+    /// What doubling the nodes of the quadrature changed at last, as a PSNR: the exact image is
+    /// known at least so well.
+    pub(crate) fn quadrature_psnr(&self) -> f64 {
+        peak_signal_to_noise(self.exact.change * self.exact.change)
+    }
+}
+
+fn psnr(image: &Image, reference: &Image) -> Outcome<f64> {
+    Ok(peak_signal_to_noise(mean_square_error(image, reference).map_err(Failure::failed)?))
 }

@@ -154,7 +154,10 @@ mod tests {
         assert!(html.contains("peaks &amp; steps"));
         // Nothing is fetched: every reference is to the page itself or data.
         for reference in html.split("href=\"").skip(1) {
-            assert!(reference.starts_with('#') || reference.starts_with("data:"), "{reference:.40}");
+            assert!(
+                reference.starts_with('#') || reference.starts_with("data:"),
+                "{reference:.40}"
+            );
         }
         assert!(!html.contains("src=") && !html.contains("url("), "{html}");
     }

@@ -30,8 +30,12 @@ pub(super) fn to_html(text: &str) -> String {
 /// A table from its head, its rule and its rows.
 fn table(lines: &[&str]) -> String {
     let mut html = String::from("<div class=\"wide\"><table>\n");
-    let right: Vec<bool> =
-        lines.get(1).map_or_else(Vec::new, |rule| cells(rule)).iter().map(|c| c.ends_with(':')).collect();
+    let right: Vec<bool> = lines
+        .get(1)
+        .map_or_else(Vec::new, |rule| cells(rule))
+        .iter()
+        .map(|c| c.ends_with(':'))
+        .collect();
     for (i, line) in lines.iter().enumerate().filter(|(i, _)| *i != 1) {
         let (tag, cells) = (if i == 0 { "th" } else { "td" }, cells(line));
         // A row whose first cell is filled begins a group.
@@ -73,7 +77,8 @@ fn inline(text: &str) -> String {
     let mut html = String::new();
     for (i, part) in text.split('`').enumerate() {
         let part = escape(part);
-        let _ = if i % 2 == 1 { write!(html, "<code>{part}</code>") } else { write!(html, "{part}") };
+        let _ =
+            if i % 2 == 1 { write!(html, "<code>{part}</code>") } else { write!(html, "{part}") };
     }
     html
 }
@@ -101,7 +106,8 @@ mod tests {
 
     #[test]
     fn what_the_tables_write_becomes_html() {
-        let mut grid = Grid::new(&[("name", Align::Left), ("x", Align::Right), ("verdict", Align::Left)]);
+        let mut grid =
+            Grid::new(&[("name", Align::Left), ("x", Align::Right), ("verdict", Align::Left)]);
         grid.row(vec!["a|b (`c`)".to_owned(), "1".to_owned(), "ok".to_owned()]);
         grid.row(vec![String::new(), "2".to_owned(), "OUTSIDE [1]".to_owned()]);
         let text = format!("## Table 1: <x>\n\n{grid}\n[1] why & how\n\nOptions:\n\n- `c`\n- d\n");

@@ -38,7 +38,10 @@ pub(crate) fn run(args: &ReportArgs) -> Outcome {
     let figures = figure_entries(args)?;
     let (scale, quick) = if args.quick {
         folder.push("quick");
-        (" Quick versions: fewer and smaller point sets, which show that everything is made.", " --quick")
+        (
+            " Quick versions: fewer and smaller point sets, which show that everything is made.",
+            " --quick",
+        )
     } else {
         ("", "")
     };

@@ -66,7 +66,10 @@ mod tests {
         assert_eq!(vectors.size.0, PIXELS * 260.0);
         fs::write(folder.path().join("figure.png"), b"png").expect("written");
         let raster = Picture::read(&path, true).expect("read");
-        assert_eq!(raster, Picture { uri: "data:image/png;base64,cG5n".to_owned(), ..vectors.clone() });
+        assert_eq!(
+            raster,
+            Picture { uri: "data:image/png;base64,cG5n".to_owned(), ..vectors.clone() }
+        );
         assert_eq!(Picture::read(&path, false).expect("read"), vectors);
         fs::write(&path, "<svg/>").expect("written");
         assert!(Picture::read(&path, true).is_err());

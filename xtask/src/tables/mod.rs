@@ -158,7 +158,12 @@ impl Workshop {
     /// For the quick forms of `tables`; point sets are not kept.
     fn quick(tables: &[&TableSpec]) -> Outcome<Self> {
         let workbench = Workbench::new(QUICK, quantities(tables));
-        Ok(Self { rows: Rows::load()?, judge: Judge::for_quick()?, workbench, folder: folder(true)? })
+        Ok(Self {
+            rows: Rows::load()?,
+            judge: Judge::for_quick()?,
+            workbench,
+            folder: folder(true)?,
+        })
     }
 
     /// For `tables` by a plan; `fresh` makes point sets again that are kept.

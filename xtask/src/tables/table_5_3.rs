@@ -1,13 +1,15 @@
 //! Table 5.3: PSNR of an image made smaller, at high sampling rates.
 
-use bn_cli::Outcome;
+use std::time::Instant;
+
 use bn_cli::analysis::Estimate;
+use bn_cli::{Failure, Outcome};
 use bn_core::PointSet;
 use bn_render::Normalization;
 use rayon::prelude::*;
 
 use super::{Cell, Context, Row, Table, TableSpec};
-use crate::measure::downsampling::Downsampling;
+use crate::measure::downsampling::{Downsampling, Psnr};
 use crate::thesis::{Judgement, RowSpec};
 
 pub(super) const SPEC: TableSpec = TableSpec {
@@ -17,176 +19,256 @@ pub(super) const SPEC: TableSpec = TableSpec {
     make: table,
 };
 
-/// The thesis's samples per pixel.
+/// The thesis's samples per pixel; methods are ranked at the last.
 const RATES: [u32; 4] = [16, 32, 64, 128];
+const HIGHEST: usize = RATES.len() - 1;
 
 /// Images of each row, as in the thesis, whatever the number of sets.
 const IMAGES: u32 = 10;
 
-/// The methods that the thesis made by its own slow algorithm, with as many iterations as their
-/// spectra need, and as many sets as time allows.
-const BY_FORCE: [(&str, &str); 2] = [("step", "1000"), ("single-peak", "2000")];
-const FORCE_SETS: u32 = 1;
+/// The methods that the thesis made by its own slow algorithm; as many sets as time allows.
+const BY_FORCE: [&str; 2] = ["step", "single-peak"];
+const FORCE_SETS: u32 = 2;
 
 /// Iterations where the points are fewer than the thesis's and nothing is judged.
 const FEW_ITERATIONS: &str = "100";
 
-/// A row before it is judged.
-struct Measured {
+/// Where the scene's stripes are at the highest rate: up to 2.1 cycles per pixel, pixels' passband
+/// included, in √n cycles per unit.
+const LOW: f64 = 2.1 / 11.313_708_498_984_76;
+
+/// Lattices have rounding errors there.
+const NEGLIGIBLE: f64 = 1e-8;
+
+/// A row to be measured.
+struct Contender {
     spec: RowSpec,
-    /// Whether the thesis's row is meant, not one beside it.
+    label: String,
+    /// The thesis's row is meant, not one beside it.
     is_thesis: bool,
-    /// PSNR of all images, rate by rate: normalised by density, and plain.
+    most_sets: u32,
+}
+
+/// What a row's sets gave.
+struct Values {
+    /// By image and rate, normalised by density and plain.
+    density: Vec<[Psnr; RATES.len()]>,
+    plain: Vec<[Psnr; RATES.len()]>,
+    /// Mean power where the scene's stripes are at the highest rate.
+    low_power: f64,
+}
+
+/// A row before it is judged; values, or why there are none.
+struct Measured {
+    contender: Contender,
     values: Result<Values, String>,
 }
 
 fn table(spec: &TableSpec, context: &Context<'_>) -> Outcome<Table> {
     let test = Downsampling::new()?;
     let contenders = contenders(context);
-    let wanted: Vec<_> = contenders.iter().map(|(row, _)| (row.clone(), most_sets(row))).collect();
-    let mut measured = Vec::new();
-    for ((spec, is_thesis), sets) in
-        contenders.into_iter().zip(context.workbench.point_sets(&wanted)?)
-    {
-        let values = sets.map(|sets| measure(&spec, &sets, &test));
-        let values = match values {
-            Ok(values) => Ok(values?),
+    let wanted: Vec<_> = contenders.iter().map(|c| (c.spec.clone(), c.most_sets)).collect();
+    let sets = context.workbench.point_sets(&wanted)?;
+    let measured = contenders.into_iter().zip(sets).map(|(contender, sets)| {
+        let values = match sets {
+            Ok(sets) => Ok(Values::of(&contender, &sets, &test)?),
             Err(reason) => Err(reason),
         };
-        measured.push(Measured { spec, is_thesis, values });
-    }
-    let last: Vec<(&str, f64)> = (measured.iter())
-        .filter(|row| row.is_thesis)
-        .filter_map(|row| Some((&*row.spec.thesis, row.mean(0, RATES.len() - 1)?)))
-        .collect();
-    let mut rows: Vec<Row> = measured.iter().map(|row| judged(row, &last, context)).collect();
+        Ok(Measured { contender, values })
+    });
+    let measured = measured.collect::<Outcome<Vec<_>>>()?;
+    let ranking = Ranking::of(&measured, context);
+    let mut rows: Vec<Row> = measured.iter().map(|row| row.judged(&ranking, context)).collect();
     rows.push(reference(&test)?);
     Ok(Table { id: spec.id, title: spec.title, decimals: 1, rows })
 }
 
 /// The rows: the thesis's in its order, those of step and single-peak sets by its own algorithm, and
 /// beside them by ours.
-fn contenders(context: &Context<'_>) -> Vec<(RowSpec, bool)> {
-    let mut rows = Vec::new();
-    for key in context.judge.thesis().methods_of(SPEC.id) {
+fn contenders(context: &Context<'_>) -> Vec<Contender> {
+    let thesis = context.judge.thesis();
+    let mut contenders = Vec::new();
+    for key in thesis.methods_of(SPEC.id) {
+        let name = thesis.method_name(key);
         for row in context.rows.of(key) {
-            let by_force = BY_FORCE.iter().find(|(method, _)| *method == row.method);
-            if let Some((_, iterations)) = by_force {
-                let few = context.workbench.plan().n < 4096;
-                let iterations = if few { FEW_ITERATIONS } else { iterations };
-                let options = [("algorithm", "force"), ("iterations", iterations)];
-                let options = options.map(|(name, value)| (name.to_owned(), value.to_owned()));
-                let why =
-                    format!("the thesis's algorithm; {FORCE_SETS} set, shifted for each image");
-                rows.push((RowSpec { options: options.into(), why, ..row.clone() }, true));
+            if !BY_FORCE.contains(&&*row.method) {
+                let (spec, label) = (row.clone(), name.to_owned());
+                contenders.push(Contender { spec, label, is_thesis: true, most_sets: IMAGES });
+                continue;
             }
-            rows.push((row.clone(), by_force.is_none()));
+            let few = context.workbench.plan().n < 4096;
+            let options = [("algorithm", "force")].into_iter();
+            let options = options.chain(few.then_some(("iterations", FEW_ITERATIONS)));
+            let options = options.map(|(name, value)| (name.to_owned(), value.to_owned()));
+            let why = format!("the thesis's algorithm; {FORCE_SETS} sets, shifted for each image");
+            contenders.push(Contender {
+                spec: RowSpec { options: options.collect(), why, ..row.clone() },
+                label: format!("{name} by force"),
+                is_thesis: true,
+                most_sets: FORCE_SETS,
+            });
+            let label = format!("{name} by spectral, not in the thesis");
+            let spec = row.clone();
+            contenders.push(Contender { spec, label, is_thesis: false, most_sets: IMAGES });
         }
     }
-    rows
+    contenders
 }
 
-fn most_sets(row: &RowSpec) -> u32 {
-    let by_force = row.options.get("algorithm").is_some_and(|algorithm| algorithm == "force");
-    if by_force { FORCE_SETS } else { IMAGES }
+impl Values {
+    fn of(contender: &Contender, sets: &[PointSet], test: &Downsampling) -> Outcome<Self> {
+        let start = Instant::now();
+        let image = |index: u32, normalization| -> Outcome<[Psnr; RATES.len()]> {
+            let set = &sets[index as usize % sets.len()];
+            let at = |rate: u32| test.psnr(set, index, f64::from(rate), normalization);
+            let [a, b, c, d] = RATES.map(at);
+            Ok([a?, b?, c?, d?])
+        };
+        let all = |normalization| -> Outcome<Vec<_>> {
+            (0..IMAGES).into_par_iter().map(|index| image(index, normalization)).collect()
+        };
+        let (density, plain) = (all(Normalization::Density)?, all(Normalization::None)?);
+        let low_power = low_power(sets)?;
+        eprintln!(
+            "{:<24} {} images from {} sets in {:.2} s",
+            contender.spec.method,
+            2 * IMAGES as usize * RATES.len(),
+            sets.len(),
+            start.elapsed().as_secs_f64()
+        );
+        Ok(Self { density, plain, low_power })
+    }
+
+    /// Mean and error over the images, of what `value` picks.
+    fn mean(images: &[[Psnr; RATES.len()]], value: impl Fn(&[Psnr]) -> f64) -> Option<Estimate> {
+        Estimate::mean(&images.iter().map(|image| value(image)).collect::<Vec<_>>())
+    }
 }
 
-/// PSNR of all images, by normalisation, image and rate.
-type Values = [Vec<[f64; RATES.len()]>; 2];
+/// Mean power of the sets up to [`LOW`].
+fn low_power(sets: &[PointSet]) -> Outcome<f64> {
+    let power = |set: &PointSet| {
+        let frequency = LOW * (set.len() as f64).sqrt();
+        Ok(bn_spectral::power_below(set, frequency).map_err(Failure::failed)?.unwrap_or(f64::NAN))
+    };
+    let powers = sets.iter().map(power).collect::<Outcome<Vec<f64>>>()?;
+    Ok(powers.iter().sum::<f64>() / powers.len() as f64)
+}
 
-fn measure(spec: &RowSpec, sets: &[PointSet], test: &Downsampling) -> Outcome<Values> {
-    let start = std::time::Instant::now();
-    let image = |index: u32, normalization| -> Outcome<[f64; RATES.len()]> {
-        let set = &sets[index as usize % sets.len()];
-        let mut values = [0.0; RATES.len()];
-        for (value, rate) in values.iter_mut().zip(RATES) {
-            *value = test.psnr(set, index, f64::from(rate), normalization)?;
-        }
-        Ok(values)
-    };
-    let all = |normalization| -> Outcome<Vec<_>> {
-        (0..IMAGES).into_par_iter().map(|index| image(index, normalization)).collect()
-    };
-    let values = [all(Normalization::Density)?, all(Normalization::None)?];
-    eprintln!(
-        "{:<24} {} images from {} sets in {:.2} s",
-        spec.method,
-        2 * IMAGES as usize * RATES.len(),
-        sets.len(),
-        start.elapsed().as_secs_f64()
-    );
-    Ok(values)
+/// The methods at the highest rate.
+struct Ranking<'a> {
+    /// The thesis's rows, without those known to be out of place: the others are not to blame.
+    places: Vec<(&'a str, f64)>,
+    /// PSNR of independent samples, whose power is 1 everywhere.
+    stochastic: Option<f64>,
+}
+
+impl<'a> Ranking<'a> {
+    fn of(measured: &'a [Measured], context: &Context<'_>) -> Self {
+        let thesis = measured.iter().filter(|row| row.contender.is_thesis);
+        let last: Vec<_> = thesis.filter_map(|row| Some((row.key(), row.highest()?))).collect();
+        let stochastic = last.iter().find(|(key, _)| *key == "random").map(|&(_, psnr)| psnr);
+        let known = |key: &str| context.judge.is_misplaced(key);
+        Self { places: last.into_iter().filter(|(key, _)| !known(key)).collect(), stochastic }
+    }
 }
 
 impl Measured {
-    /// The images' values at one rate.
-    fn at(&self, plain: usize, rate: usize) -> Option<Estimate> {
-        let images = &self.values.as_ref().ok()?[plain];
-        let values: Vec<f64> = images.iter().map(|image| image[rate]).collect();
-        Estimate::mean(&values)
+    /// The thesis's key of the row.
+    fn key(&self) -> &str {
+        &self.contender.spec.thesis
     }
 
-    fn mean(&self, plain: usize, rate: usize) -> Option<f64> {
-        Some(self.at(plain, rate)?.value)
+    /// PSNR at the highest rate.
+    fn highest(&self) -> Option<f64> {
+        let values = self.values.as_ref().ok()?;
+        Some(Values::mean(&values.density, |image| image[HIGHEST].value)?.value)
     }
-}
 
-/// The row with its cells judged; `last` holds the ranking at the highest rate.
-fn judged(row: &Measured, last: &[(&str, f64)], context: &Context<'_>) -> Row {
-    let (judge, key) = (context.judge, &*row.spec.thesis);
-    let mut cells = Vec::new();
-    for (i, rate) in RATES.into_iter().enumerate() {
-        let ours = row.at(0, i);
-        let judgement = match ours {
-            Some(ours) if row.is_thesis => judge.judge_psnr(key, rate, ours.value),
-            _ => judge.show_psnr(key, rate, None),
+    fn judged(&self, ranking: &Ranking<'_>, context: &Context<'_>) -> Row {
+        let Contender { spec, label, .. } = &self.contender;
+        let cells = match &self.values {
+            Ok(values) => self.cells(values, ranking, context),
+            // No place at all.
+            Err(_) => vec![Cell::new(
+                &format!("misplaced at {} spp", RATES[HIGHEST]),
+                None,
+                context.judge.judge_place(self.key(), f64::NAN),
+            )],
         };
-        cells.push(Cell::new(&format!("{rate} spp"), ours, judgement));
+        Row {
+            label: label.clone(),
+            method: spec.method.clone(),
+            options: spec.options_text(),
+            why: spec.why.clone(),
+            failure: self.values.as_ref().err().cloned(),
+            cells,
+        }
     }
-    for (i, rate) in RATES.into_iter().enumerate() {
-        let reason = Some("plain convolution, without the division by the density of samples");
-        let judgement = judge.show_psnr(key, rate, reason);
-        cells.push(Cell::new(&format!("{rate} spp, plain"), row.at(1, i), judgement));
-    }
-    let highest = RATES.len() - 1;
-    if let (true, Some(value)) = (row.is_thesis, row.mean(0, highest)) {
-        let misplaced = judge.misplaced(key, value, last, RATES[highest]);
-        let why = "how far, in dB, from the thesis's order of methods; not judged";
-        let judgement = Judgement::shown(why);
-        cells.push(Cell::new(
-            &format!("misplaced at {} spp", RATES[highest]),
-            Some(alone(misplaced)),
-            judgement,
-        ));
-    }
-    if let ("random", Some(first), Some(value)) = (key, row.mean(0, 0), row.mean(0, highest)) {
-        let gain = (value - first) / highest as f64;
-        cells.push(Cell::new(&"gain per doubling", Some(alone(gain)), judge.judge_doubling(gain)));
-    }
-    Row {
-        label: judge.thesis().method_name(key).to_owned(),
-        method: row.spec.method.clone(),
-        options: row.spec.options_text(),
-        why: row.spec.why.clone(),
-        failure: row.values.as_ref().err().cloned(),
-        cells,
+
+    fn cells(&self, values: &Values, ranking: &Ranking<'_>, context: &Context<'_>) -> Vec<Cell> {
+        let (judge, key, is_thesis) = (context.judge, self.key(), self.contender.is_thesis);
+        let mut cells = Vec::new();
+        for (i, rate) in RATES.into_iter().enumerate() {
+            let ours = Values::mean(&values.density, |image| image[i].value);
+            let judgement = match ours {
+                Some(ours) if is_thesis => judge.judge_psnr(key, rate, ours.value),
+                _ => judge.show_psnr(key, rate, None),
+            };
+            cells.push(Cell::new(&format!("{rate} spp"), ours, judgement));
+        }
+        for (i, rate) in RATES.into_iter().enumerate() {
+            let ours = Values::mean(&values.plain, |image| image[i].value);
+            let judgement = judge.show_psnr(key, rate, Some(PLAIN));
+            cells.push(Cell::new(&format!("{rate} spp, plain"), ours, judgement));
+        }
+        let rate = RATES[HIGHEST];
+        let exact = Values::mean(&values.density, |image| image[HIGHEST].exact);
+        cells.push(Cell::new(&format!("{rate} spp, exact"), exact, Judgement::shown(EXACT)));
+        if let Some(stochastic) = ranking.stochastic.filter(|_| values.low_power > NEGLIGIBLE) {
+            let noise = alone(stochastic - 10.0 * values.low_power.log10());
+            cells.push(Cell::new(&format!("noise at {rate} spp"), noise, Judgement::shown(NOISE)));
+        }
+        if let (true, Some(value)) = (is_thesis, self.highest()) {
+            let misplaced = judge.misplaced(key, value, &ranking.places, rate);
+            let judgement = judge.judge_place(key, misplaced);
+            cells.push(Cell::new(&format!("misplaced at {rate} spp"), alone(misplaced), judgement));
+        }
+        if key == "random" {
+            let gain = |image: &[Psnr]| (image[HIGHEST].value - image[0].value) / HIGHEST as f64;
+            if let Some(gain) = Values::mean(&values.density, gain) {
+                let judgement = judge.judge_doubling(gain.value);
+                cells.push(Cell::new(&"gain per doubling", Some(gain), judgement));
+            }
+        }
+        cells
     }
 }
+
+const PLAIN: &str = "plain convolution, without the division by the density of samples";
+const EXACT: &str = "against the convolution by quadrature instead of the thesis's reference";
+const NOISE: &str = "what the pattern's mean power at low frequencies (up to 2.1 cycles per pixel, where the scene's \
+                     stripes are) makes of the noise of stochastic sampling";
 
 /// How good the reference itself is.
 fn reference(test: &Downsampling) -> Outcome<Row> {
-    let judgement = Judgement::shown("the reference against the convolution by quadrature");
+    let limit =
+        "PSNR of the reference against the convolution by quadrature: a limit for every row";
+    let quadrature = "what doubling the nodes of the quadrature changed at last";
     Ok(Row {
-        label: "Reference".to_owned(),
-        method: "hexagonal".to_owned(),
+        label: "Reference, hexagonal grid at 512 spp".to_owned(),
+        method: String::new(),
         options: String::new(),
         why: String::new(),
         failure: None,
-        cells: vec![Cell::new(&"512 spp", Some(alone(test.reference_psnr()?)), judgement)],
+        cells: vec![
+            Cell::new(&"512 spp, exact", alone(test.reference_psnr()?), Judgement::shown(limit)),
+            Cell::new(&"quadrature", alone(test.quadrature_psnr()), Judgement::shown(quadrature)),
+        ],
     })
 }
 
 /// A value without an error.
-fn alone(value: f64) -> Estimate {
-    Estimate { value, std_error: None }
+fn alone(value: f64) -> Option<Estimate> {
+    Some(Estimate { value, std_error: None })
 }

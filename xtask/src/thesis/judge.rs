@@ -13,6 +13,7 @@ pub(crate) struct Judge {
     thesis: ThesisValues,
     tolerances: Tolerances,
     differences: Vec<KnownDifference>,
+    places: Vec<KnownPlace>,
     basis: Basis,
 }
 
@@ -72,11 +73,24 @@ struct KnownDifference {
     reason: String,
 }
 
+/// A method whose place in the ranking of table 5.3 is not the thesis's, and why.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KnownPlace {
+    /// The thesis's key of the row.
+    pub(super) thesis: String,
+    /// By how many dB it is on the wrong side of another method.
+    pub(super) value: f64,
+    pub(super) reason: String,
+}
+
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KnownDifferences {
     #[serde(rename = "difference", default)]
     differences: Vec<KnownDifference>,
+    #[serde(rename = "place", default)]
+    places: Vec<KnownPlace>,
 }
 
 /// What a value is held against and how it fares.
@@ -133,6 +147,7 @@ impl Judge {
             tolerances: toml::from_str(include_str!("../../data/tolerances.toml"))
                 .map_err(Failure::failed)?,
             differences: known.differences,
+            places: known.places,
             basis,
         })
     }
@@ -149,6 +164,10 @@ impl Judge {
 
     pub(crate) fn thesis(&self) -> &ThesisValues {
         &self.thesis
+    }
+
+    pub(super) fn places(&self) -> &[KnownPlace] {
+        &self.places
     }
 
     pub(super) fn basis(&self) -> &Basis {
@@ -232,6 +251,11 @@ impl Judge {
 }
 
 impl Judgement {
+    /// The judgement on what is shown only, with what it is.
+    pub(crate) fn shown(what: &str) -> Self {
+        Self::not_judged(Some(what.to_owned()), Verdict::NotJudged)
+    }
+
     /// The judgement on what is not held against anything: not judged, or not yet there.
     pub(super) fn not_judged(reason: Option<String>, verdict: Verdict) -> Self {
         Self { thesis: None, expected: None, tolerance: None, reason, verdict }
@@ -353,6 +377,12 @@ mod tests {
         for known in &judge.differences {
             assert!(rows.iter().any(|row| row.method == known.method), "{known:?}");
             assert!(known.value.is_finite() && !known.reason.is_empty(), "{known:?}");
+        }
+        for place in &judge.places {
+            assert!(
+                rows.of(&place.thesis).next().is_some() && !place.reason.is_empty(),
+                "{place:?}"
+            );
         }
         for exception in &judge.tolerances.exceptions {
             assert!(rows.iter().any(|row| row.thesis == exception.thesis), "{exception:?}");

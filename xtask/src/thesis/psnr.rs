@@ -1,6 +1,6 @@
 //! When a PSNR of table 5.3 agrees with the thesis.
 
-use super::judge::Basis;
+use super::judge::{Basis, KnownPlace};
 use super::{Judge, Judgement, Verdict};
 
 /// The test image is ours, its contrast fixed by one number of the table.
@@ -94,6 +94,28 @@ impl Judge {
         });
         worst.fold(0.0, f64::max)
     }
+
+    /// Whether it is known that this method's place in the ranking is not the thesis's.
+    pub(crate) fn is_misplaced(&self, method: &str) -> bool {
+        self.place(method).is_some()
+    }
+
+    /// Judges a method's place in the ranking, `misplaced` dB off: fine up to a tie, or as far as is
+    /// known and explained.
+    pub(crate) fn judge_place(&self, method: &str, misplaced: f64) -> Judgement {
+        if !matches!(self.basis(), Basis::Thesis) {
+            return Judgement::not_judged(None, Verdict::NotJudged);
+        }
+        let (expected, reason, good) = match self.place(method) {
+            Some(known) => (known.value, Some(known.reason.clone()), Verdict::Explained),
+            None => (0.0, None, Verdict::Agrees),
+        };
+        Judgement::held_against(Some(misplaced), (expected, expected), TIE, reason, good)
+    }
+
+    fn place(&self, method: &str) -> Option<&KnownPlace> {
+        self.places().iter().find(|place| place.thesis == method)
+    }
 }
 
 #[cfg(test)]
@@ -122,5 +144,12 @@ mod tests {
         assert_eq!(of("hex", 70.0), 2.5);
         assert_eq!(of("cccvt", 72.5), 2.5);
         assert_eq!(of("fpo", 60.0), 0.0, "a tie with kernel density");
+        let verdict = |misplaced| judge.judge_place("hex", misplaced).verdict;
+        assert_eq!([verdict(1.0), verdict(1.1)], [Verdict::Agrees, Verdict::Outside]);
+        for known in judge.places() {
+            let at = |misplaced| judge.judge_place(&known.thesis, misplaced).verdict;
+            assert_eq!(at(known.value), Verdict::Explained);
+            assert_eq!(at(known.value + 1.1), Verdict::Outside);
+        }
     }
 }
