@@ -251,11 +251,6 @@ impl Judge {
 }
 
 impl Judgement {
-    /// The judgement on what is shown only, with what it is.
-    pub(crate) fn shown(what: &str) -> Self {
-        Self::not_judged(Some(what.to_owned()), Verdict::NotJudged)
-    }
-
     /// The judgement on what is not held against anything: not judged, or not yet there.
     pub(super) fn not_judged(reason: Option<String>, verdict: Verdict) -> Self {
         Self { thesis: None, expected: None, tolerance: None, reason, verdict }
