@@ -116,12 +116,11 @@ pub(crate) fn drawn(quick: bool, fresh: bool) -> Outcome<Vec<Drawn>> {
     let one = |figure: &'static FigureSpec| {
         let studio = figure.studio(quick)?;
         let kept = if fresh { None } else { studio.finished() };
-        let files = match kept {
-            Some(files) => files,
-            None => {
-                draw(figure, quick)?;
-                studio.finished().unwrap_or_default()
-            }
+        let files = if let Some(files) = kept {
+            files
+        } else {
+            draw(figure, quick)?;
+            studio.finished().unwrap_or_default()
         };
         Ok(Drawn { id: figure.id, title: figure.title, files })
     };

@@ -226,13 +226,17 @@ impl Measured {
         let exact = Values::mean(&values.density, |image| image[HIGHEST].exact);
         cells.push(Cell::new(&format!("{rate} spp, exact"), exact, Judgement::shown(EXACT)));
         if let Some(stochastic) = ranking.stochastic.filter(|_| values.low_power > NEGLIGIBLE) {
-            let noise = alone(stochastic - 10.0 * values.low_power.log10());
+            let noise = Some(alone(stochastic - 10.0 * values.low_power.log10()));
             cells.push(Cell::new(&format!("noise at {rate} spp"), noise, Judgement::shown(NOISE)));
         }
         if let (true, Some(value)) = (is_thesis, self.highest()) {
             let misplaced = judge.misplaced(key, value, &ranking.places, rate);
             let judgement = judge.judge_place(key, misplaced);
-            cells.push(Cell::new(&format!("misplaced at {rate} spp"), alone(misplaced), judgement));
+            cells.push(Cell::new(
+                &format!("misplaced at {rate} spp"),
+                Some(alone(misplaced)),
+                judgement,
+            ));
         }
         if key == "random" {
             let gain = |image: &[Psnr]| (image[HIGHEST].value - image[0].value) / HIGHEST as f64;
@@ -262,13 +266,21 @@ fn reference(test: &Downsampling) -> Outcome<Row> {
         why: String::new(),
         failure: None,
         cells: vec![
-            Cell::new(&"512 spp, exact", alone(test.reference_psnr()?), Judgement::shown(limit)),
-            Cell::new(&"quadrature", alone(test.quadrature_psnr()), Judgement::shown(quadrature)),
+            Cell::new(
+                &"512 spp, exact",
+                Some(alone(test.reference_psnr()?)),
+                Judgement::shown(limit),
+            ),
+            Cell::new(
+                &"quadrature",
+                Some(alone(test.quadrature_psnr())),
+                Judgement::shown(quadrature),
+            ),
         ],
     })
 }
 
 /// A value without an error.
-fn alone(value: f64) -> Option<Estimate> {
-    Some(Estimate { value, std_error: None })
+fn alone(value: f64) -> Estimate {
+    Estimate { value, std_error: None }
 }

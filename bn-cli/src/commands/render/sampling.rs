@@ -58,6 +58,7 @@ pub(super) struct SamplingArgs {
     supersampling: Option<String>,
     #[command(flatten)]
     reconstruction: ReconstructionArgs,
+    #[command(flatten)]
     adaptive: AdaptiveArgs,
 }
 

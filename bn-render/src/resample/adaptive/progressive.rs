@@ -30,9 +30,11 @@ impl ProgressivePattern {
     /// # Errors
     /// If a rate is not a number from 2⁻¹⁶ to 2¹⁶.
     pub fn new(set: &PointSet, pilot: f64, most: f64, seed: Seed) -> Result<Self, PatternError> {
-        // Checks `most`, which need not be the rate of any layer.
-        Pattern::tiled(set, most)?;
         let first = pilot / (1.0 + Self::GROWTH);
+        // Checks both: `most` need not be the rate of any layer, and from a first of 0 on layers would
+        // have no end.
+        Pattern::tiled(set, first)?;
+        Pattern::tiled(set, most)?;
         let mut rates = vec![first, pilot - first];
         let (mut total, mut next) = (pilot, first * Self::GROWTH.powi(2));
         while total + next <= most {
