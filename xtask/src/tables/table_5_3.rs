@@ -25,6 +25,8 @@ const HIGHEST: usize = RATES.len() - 1;
 
 /// Images of each row, as in the thesis, whatever the number of sets.
 const IMAGES: u32 = 10;
+/// The same where only few points are made: enough to see that it works.
+const QUICK_IMAGES: u32 = 2;
 
 /// The methods that the thesis made by its own slow algorithm; as many sets as time allows.
 const BY_FORCE: [&str; 2] = ["step", "single-peak"];
@@ -69,9 +71,10 @@ fn table(spec: &TableSpec, context: &Context<'_>) -> Outcome<Table> {
     let contenders = contenders(context);
     let wanted: Vec<_> = contenders.iter().map(|c| (c.spec.clone(), c.most_sets)).collect();
     let sets = context.workbench.point_sets(&wanted)?;
+    let images = if context.workbench.plan().n < 4096 { QUICK_IMAGES } else { IMAGES };
     let measured = contenders.into_iter().zip(sets).map(|(contender, sets)| {
         let values = match sets {
-            Ok(sets) => Ok(Values::of(&contender, &sets, &test)?),
+            Ok(sets) => Ok(Values::of(&contender, &sets, images, &test)?),
             Err(reason) => Err(reason),
         };
         Ok(Measured { contender, values })
@@ -116,7 +119,12 @@ fn contenders(context: &Context<'_>) -> Vec<Contender> {
 }
 
 impl Values {
-    fn of(contender: &Contender, sets: &[PointSet], test: &Downsampling) -> Outcome<Self> {
+    fn of(
+        contender: &Contender,
+        sets: &[PointSet],
+        images: u32,
+        test: &Downsampling,
+    ) -> Outcome<Self> {
         let start = Instant::now();
         let image = |index: u32, normalization| -> Outcome<[Psnr; RATES.len()]> {
             let set = &sets[index as usize % sets.len()];
@@ -125,14 +133,14 @@ impl Values {
             Ok([a?, b?, c?, d?])
         };
         let all = |normalization| -> Outcome<Vec<_>> {
-            (0..IMAGES).into_par_iter().map(|index| image(index, normalization)).collect()
+            (0..images).into_par_iter().map(|index| image(index, normalization)).collect()
         };
         let (density, plain) = (all(Normalization::Density)?, all(Normalization::None)?);
         let low_power = low_power(sets)?;
         eprintln!(
             "{:<24} {} images from {} sets in {:.2} s",
             contender.spec.method,
-            2 * IMAGES as usize * RATES.len(),
+            2 * images as usize * RATES.len(),
             sets.len(),
             start.elapsed().as_secs_f64()
         );
