@@ -7,7 +7,7 @@ use bn_render::{ImageSpectrum, PatternPower, PlaneWave, PlaneWaves, Prediction, 
 
 use super::FigureSpec;
 use super::studio::Studio;
-use crate::measure::noise::Sampled;
+use crate::measure::noise::{RATE, Sampled};
 
 pub(super) const FIGURES: &[FigureSpec] = &[
     FigureSpec { id: "3.5", title: "the spectrum of a sampled image", draw: convolution },
@@ -187,7 +187,7 @@ fn noise(studio: &Studio) -> Outcome {
     let text = format!(
         "Above: the error's spectrum over that of stochastic sampling, predicted (lines) from the mean \
          periodogram of {count} sets of {points} points and measured (dots) from the waves' samples; *f* in 2 √*n*. \
-         Below: noise of the pixels in dB under 1, predicted / measured (difference), at one sample per \
+         Below: noise of the pixels in dB under 1, predicted / measured (difference), at {RATE} samples per \
          pixel through plain Lanczos 2, amplitude ½. *f* = 0 is predicted by eq. 3.16."
     );
     studio.page("", &page.table(table).paragraph(Text::math(&text)))
