@@ -69,7 +69,8 @@ fn convolution(studio: &Studio) -> Outcome {
         image.lines().iter().find(near).map_or(0.0, |line| line.power * POINTS as f64)
     };
     let white = own(DVec2::ZERO);
-    let mut page = Page::new().titled(Text::math("*P*_{J} = *P*_{I} ⋆ *P*_{S}")).with_density(3.0);
+    let mut page =
+        Page::new().titled(Text::math("*P*_{J}: *P*_{I} convolved with *P*_{S}")).with_density(3.0);
     for (method, label) in [
         ("regular", "square grid"),
         ("stochastic", "stochastic sampling"),

@@ -29,8 +29,9 @@ use crate::{Frame, Image, KernelTable, Scene};
 /// can't see: what both layers miss (a detail between all samples of a window), and, for lattices,
 /// errors that are the same all over the image, of which one pair of shifts is one draw only (sets
 /// whose densest layer has tiles of few pixels come close to that). Scenes that are half constant
-/// gain under well-spread patterns; independent samples gain little, as the layer that only judges
-/// takes a quarter.
+/// gain under well-spread patterns. Where most of an image needs samples, and with independent ones,
+/// as many spread evenly do better: the layer that only judges takes a fifth, and rates come in steps
+/// of four.
 ///
 /// A sample counts by 1 over the samples per pixel of its block, so that borders between blocks of
 /// different rates leave no trace. Tiles of 128 × 128 pixels are rendered each for itself: results
