@@ -2,7 +2,7 @@
 //! saves.
 
 mod common;
-#[path = "../tests/common/silent.rs"]
+#[path = "../tests/render/common/silent.rs"]
 mod silent;
 
 use std::hint::black_box;

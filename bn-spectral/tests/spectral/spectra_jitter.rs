@@ -9,7 +9,7 @@ use rand::RngExt as _;
 fn radial_mean_and_cuts_match_the_table() {
     let cells = 64.0;
     let jitter = JitteredGrid::new(64);
-    let rows = include_str!("data/jitter_radial.csv").lines().skip(1);
+    let rows = include_str!("../data/jitter_radial.csv").lines().skip(1);
     let mut count = 0;
     for row in rows {
         let cells_of_row: Vec<f64> =

@@ -1,13 +1,11 @@
 //! Power diagrams whose cells are measured by a density.
 
-mod common;
-
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use crate::common::*;
 use bn_core::{DVec2, DensityFunction, DensityIntegrals, torus};
 use bn_geometry::*;
-use common::*;
 
 fn wave(p: DVec2) -> f64 {
     1.0 + 0.7 * (TAU * p.x).sin() * (TAU * p.y).cos()

@@ -1,10 +1,8 @@
 //! Weights that give all cells the same area.
 
-mod common;
-
+use crate::common::*;
 use bn_core::{DVec2, PointSet, Seed};
 use bn_geometry::*;
-use common::*;
 use proptest::prelude::*;
 use rand::RngExt;
 

@@ -1,17 +1,11 @@
 //! Patterns whose samples weigh differently.
 
-#[path = "common/areas.rs"]
-mod areas;
-#[path = "common/sets.rs"]
-mod sets;
-
-use areas::cell_areas;
+use crate::common::{cell_areas, jittered_set, random_set};
 use bn_core::{CellGrid, DVec2, PointSet};
 use bn_render::{
     Constant, Frame, KernelTable, Normalization, Pattern, PatternError, Renderer, Scene,
     SphereScene, Window, ZonePlate, kernel,
 };
-use sets::{jittered_set, random_set};
 
 fn frame(width: u32, height: u32) -> Frame {
     Frame::new(width, height).expect("a size")

@@ -13,14 +13,14 @@ fn read(bytes: &[u8]) -> PointSet {
 /// The six sets with ν_eff (given to 0.005) and Ω (to 0.001) of `data/psa_values.csv`.
 fn sets() -> Vec<(&'static str, PointSet, f64, f64)> {
     let files: [(&str, &[u8]); 6] = [
-        ("random_0.rps", include_bytes!("data/random_0.rps")),
-        ("step_0.rps", include_bytes!("data/step_0.rps")),
-        ("singlepeak_0.rps", include_bytes!("data/singlepeak_0.rps")),
-        ("fpo_0.rps", include_bytes!("data/fpo_0.rps")),
-        ("grid_0.rps", include_bytes!("data/grid_0.rps")),
-        ("hexapprox_0.rps", include_bytes!("data/hexapprox_0.rps")),
+        ("random_0.rps", include_bytes!("../data/random_0.rps")),
+        ("step_0.rps", include_bytes!("../data/step_0.rps")),
+        ("singlepeak_0.rps", include_bytes!("../data/singlepeak_0.rps")),
+        ("fpo_0.rps", include_bytes!("../data/fpo_0.rps")),
+        ("grid_0.rps", include_bytes!("../data/grid_0.rps")),
+        ("hexapprox_0.rps", include_bytes!("../data/hexapprox_0.rps")),
     ];
-    let values = include_str!("data/psa_values.csv");
+    let values = include_str!("../data/psa_values.csv");
     let row = |(name, bytes): (&'static str, &[u8])| {
         let row = values.lines().find(|row| row.starts_with(name)).expect("a row for every file");
         let mut last = row.rsplit(',').map(|cell| cell.parse().expect("a number"));

@@ -1,13 +1,8 @@
 //! The plain renderer that the fast one is held against: nested loops straight from the
 //! definitions.
 
-mod sets;
-mod silent;
-
 use bn_core::{DVec2, PointSet};
 use bn_render::{Kernel, Normalization, Scene};
-pub use sets::{jittered_set, random_set};
-pub use silent::Silent;
 
 /// All pixels of channel `channel`, in f64; NaN where no sample has weight.
 pub fn nested_loops(

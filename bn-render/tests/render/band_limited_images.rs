@@ -1,11 +1,6 @@
 //! Images from band-limited reconstruction.
 
-#[path = "common/areas.rs"]
-mod areas;
-#[path = "common/sets.rs"]
-mod sets;
-
-use areas::cell_areas;
+use crate::common::{cell_areas, jittered_set, random_set};
 use bn_core::{DVec2, PointSet, Unobserved};
 use bn_render::{
     BandLimitedError, BandLimitedMethod, BandLimitedOptions, BandLimitedRenderer, BandLimitedStats,
@@ -13,7 +8,6 @@ use bn_render::{
     SphereScene, Stopping, Window, exact_convolution, kernel, mean_square_error,
     peak_signal_to_noise,
 };
-use sets::{jittered_set, random_set};
 
 fn frame(width: u32, height: u32) -> Frame {
     Frame::new(width, height).expect("a size")

@@ -1,21 +1,15 @@
 //! Fits of trigonometric polynomials against dense least squares, and what they make of degenerate
 //! samples.
 
-#[path = "common/areas.rs"]
-mod areas;
-#[path = "common/sets.rs"]
-mod sets;
-
 use std::f64::consts::TAU;
 
-use areas::cell_areas;
+use crate::common::{cell_areas, jittered_set, random_set};
 use bn_core::{DVec2, Seed, Unobserved};
 use bn_render::{
     BandLimitedError, BandLimitedFit, Convergence, Degree, Stop, Stopping, TrigonometricPolynomial,
 };
 use proptest::prelude::*;
 use rand::RngExt;
-use sets::{jittered_set, random_set};
 
 const EXACTLY: Stopping = Stopping { iterations: 400, tolerance: 1e-13 };
 

@@ -1,10 +1,8 @@
 //! Power diagrams against brute force and closed forms, whatever the points and weights.
 
-mod common;
-
+use crate::common::*;
 use bn_core::{DVec2, Seed};
 use bn_geometry::*;
-use common::*;
 use proptest::prelude::*;
 use rand::RngExt;
 

@@ -1,16 +1,13 @@
 //! Statistics of errors: mean and energy of random scenes against integration by brute force, and
 //! tiles that join without a trace.
 
-#[path = "common/sets.rs"]
-mod sets;
-
+use crate::common::{jittered_set, random_set};
 use bn_core::{DVec2, PointSet, Seed};
 use bn_render::{
     Frame, Kernel, KernelTable, Normalization, Pattern, PlaneWave, PlaneWaves, Renderer, Scene,
     TileVariation, kernel,
 };
 use proptest::prelude::*;
-use sets::{jittered_set, random_set};
 
 /// ∫ r cos 2πfx / ∫ r by the midpoint rule.
 fn gain(kernel: &dyn Kernel, f: f64) -> f64 {

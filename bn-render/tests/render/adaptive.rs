@@ -1,15 +1,12 @@
 //! Adaptive rendering: what it states, what it saves, and that nothing else depends on how it runs.
 
-#[path = "common/sets.rs"]
-mod sets;
-
+use crate::common::{jittered_set, random_set};
 use bn_core::{DVec2, PointSet, Seed, Unobserved};
 use bn_render::{
     AdaptiveRenderer, AdaptiveStats, Channels, Checkerboard, Constant, Frame, Image, KernelTable,
     Normalization, Pattern, ProgressivePattern, Rect, Renderer, Scene, SphereScene, TileVariation,
     Window, ZonePlate, exact_convolution, kernel, mean_square_error,
 };
-use sets::{jittered_set, random_set};
 
 fn frame(width: u32, height: u32) -> Frame {
     Frame::new(width, height).expect("a size")

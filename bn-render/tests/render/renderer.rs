@@ -1,13 +1,11 @@
 //! The renderer against nested loops, and what it promises to the bit.
 
-mod common;
-
+use crate::common::{Silent, jittered_set, nested_loops, random_set};
 use bn_core::{DVec2, PointSet, Seed};
 use bn_render::{
     Channels, Checkerboard, Color, Constant, Frame, KERNELS, KernelTable, Normalization, Pattern,
     Rect, Renderer, Scene, SphereScene, TileVariation, Window, ZonePlate, kernel,
 };
-use common::{Silent, jittered_set, nested_loops, random_set};
 use proptest::prelude::*;
 
 /// Three channels of different scenes.

@@ -1,12 +1,10 @@
 //! The triangulation against spade's of 3 × 3 copies.
 
-mod common;
-
 use std::collections::BTreeSet;
 
+use crate::common::{at, canonical_face, canonical_faces, random_points, set};
 use bn_core::{DVec2, Seed};
 use bn_geometry::Triangulation;
-use common::{at, canonical_face, canonical_faces, random_points, set};
 use rand::RngExt;
 use spade::{DelaunayTriangulation, Point2, Triangulation as _};
 

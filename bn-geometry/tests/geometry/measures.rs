@@ -1,10 +1,8 @@
 //! Spacing, coverage, cells and order against brute force, whatever the points.
 
-mod common;
-
+use crate::common::*;
 use bn_core::{DVec2, Seed, torus};
 use bn_geometry::*;
-use common::*;
 use proptest::prelude::*;
 use rand::RngExt;
 

@@ -7,7 +7,7 @@ use bn_spectral::{HankelPlan, Window, j1, jinc};
 /// u and F(u) of the rows of one pair.
 fn rows(pair: &str, params: &str) -> Vec<(f64, f64)> {
     let prefix = format!("{pair},{params},");
-    let rows = include_str!("data/hankel_pairs.csv").lines();
+    let rows = include_str!("../data/hankel_pairs.csv").lines();
     let rows: Vec<(f64, f64)> = rows
         .filter_map(|row| row.strip_prefix(&prefix)?.split_once(','))
         .map(|(u, f)| (u.parse().expect("a number"), f.parse().expect("a number")))

@@ -10,7 +10,7 @@ fn envelope(x: f64) -> f64 {
 
 /// Argument and the three reference values of every row, all finite doubles.
 fn reference() -> Vec<[f64; 4]> {
-    let rows = include_str!("data/bessel.csv").lines().skip(1);
+    let rows = include_str!("../data/bessel.csv").lines().skip(1);
     rows.map(|row| {
         let mut cells = row.split(',').map(|cell| cell.parse().expect("a number"));
         [(); 4].map(|()| cells.next().expect("four columns"))

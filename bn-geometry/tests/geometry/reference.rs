@@ -3,7 +3,7 @@
 use bn_core::{PointSet, io};
 use bn_geometry::{Coverage, Spacing, Triangulation, bond_orientational_order};
 
-const VALUES: &str = include_str!("data/values.csv");
+const VALUES: &str = include_str!("../data/values.csv");
 
 fn read(name: &str) -> PointSet {
     let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));

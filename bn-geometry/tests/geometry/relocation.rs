@@ -1,10 +1,8 @@
 //! Moving points, and what they would leave behind, against taking them out and adding them.
 
-mod common;
-
+use crate::common::*;
 use bn_core::{DVec2, Seed, torus};
 use bn_geometry::{Circle, Spacing, Triangulation, Vacancy};
-use common::*;
 use proptest::prelude::*;
 use rand::RngExt;
 

@@ -1,10 +1,8 @@
 //! The triangulation against brute force, whatever the points.
 
-mod common;
-
+use crate::common::*;
 use bn_core::{DVec2, Seed};
 use bn_geometry::{Location, Triangulation};
-use common::*;
 use proptest::prelude::*;
 use rand::RngExt;
 use rand::seq::SliceRandom;

@@ -1,8 +1,6 @@
 //! Predicted noise against the renderer's own, and against closed forms.
 
-#[path = "common/sets.rs"]
-mod sets;
-
+use crate::common::{jittered_set, random_set};
 use bn_core::{DVec2, PointSet, Seed};
 use bn_render::{
     Frame, Image, ImageSpectrum, KernelTable, KernelTransfer, Normalization, Pattern, PatternError,
@@ -11,7 +9,6 @@ use bn_render::{
 use bn_spectral::JitteredGrid;
 use proptest::prelude::*;
 use rand::RngExt;
-use sets::{jittered_set, random_set};
 
 fn waves(mean: f64, list: &[(f64, f64, f64)]) -> PlaneWaves {
     let wave =
