@@ -44,6 +44,7 @@ fn draw(studio: &Studio) -> Outcome {
         }
         page = page.row(Row::new(120.0, row));
     }
-    let text = format!("Means of {count} sets of {n} points; Ω from the exact ring means.");
+    let sets = if count == 1 { "One set".to_owned() } else { format!("Means of {count} sets") };
+    let text = format!("{sets} of {n} points; Ω from the exact ring means.");
     studio.page("", &page.paragraph(Text::plain(&text)))
 }

@@ -1,14 +1,16 @@
 //! Figures 5.5 to 5.7: spectra of low oscillation, what they ask for and what point sets have.
 
 use bn_cli::analysis::{Analysis, Statistic};
-use bn_cli::plot::{Page, Row, Style, Text};
+use bn_cli::plot::{Axis, Page, Panel, Row, Style, Text};
 use bn_cli::{Failure, Outcome};
 use bn_core::{Density, PointSet, Seed, Unobserved};
+use bn_render::{Frame, ZonePlate};
 use bn_samplers::{Algorithm, Sampler as _, SpectrumMatching};
 use bn_spectral::{Realizability, SinglePeak, Target, highest_step};
 use rayon::prelude::*;
 
 use super::FigureSpec;
+use super::gallery::{picture, rendered};
 use super::panels::{self, Line};
 use super::studio::Studio;
 
@@ -17,6 +19,12 @@ pub(super) const FIGURES: &[FigureSpec] = &[
     FigureSpec { id: "5.6", title: "the shape of the single-peak spectrum", draw: shape },
     FigureSpec { id: "5.7", title: "four single-peak patterns", draw: peaks },
 ];
+
+/// Height of the rows in points.
+const HEIGHT: f64 = 125.0;
+
+/// The highest local frequency of the zone plates, in cycles per pixel.
+const PLATE: f64 = 1.5;
 
 /// The highest frequency shown, in √n/2, and the largest distance, in `d_hex`.
 const HIGHEST: f64 = 5.0;
@@ -47,7 +55,7 @@ fn steps(studio: &Studio) -> Outcome {
     ));
     let target = Target::step(density, highest).map_err(Failure::failed)?;
     let sets = studio.sets("step", &[], n, count)?;
-    page = page.row(result("", &target, &sets, 1.5));
+    page = page.row(Row::new(HEIGHT, result("", &target, &sets, 1.5)));
     let text = format!(
         "Above: beyond *ν*_{{max}} = √(*n*/π) the RDF would be negative. Below: *ν*_{{0}} = *ν*_{{max}}, {count} sets of \
          {n} points: {}.",
@@ -100,12 +108,17 @@ fn peaks(studio: &Studio) -> Outcome {
             SinglePeak { nu0: nu0 * scale, peak: peak * scale, sigma: sigma * scale, width: scale };
         let target = Target::single_peak(Density::new(n), peak).map_err(Failure::failed)?;
         let sets = matched(&target, n, count)?;
-        let least = Realizability::of(&target).min_g;
-        notes.push(format!("{}: least *g* {least:.2}, {}", &name[..3], statistics(&sets)));
-        let top = target_top(&target);
-        page = page.row(result(name, &target, &sets, top));
+        let least = format!("{:.2}", Realizability::of(&target).min_g).replace('-', "−");
+        notes.push(format!("{}: least *g* {least}, {}", &name[..3], statistics(&sets)));
+        let mut panels = result(name, &target, &sets, target_top(&target));
+        panels.insert(1, plate(&sets[0])?);
+        page = page.row(Row::new(HEIGHT, panels));
     }
-    let text = format!("{count} sets of {n} points each. {}.", notes.join(". "));
+    let text = format!(
+        "{count} sets of {n} points each; zone plates at 1 spp up to {PLATE} cycles per pixel at the middle of \
+         each side. {}.",
+        notes.join(". ")
+    );
     studio.page("", &page.paragraph(Text::math(&text)))
 }
 
@@ -125,7 +138,7 @@ fn target_top(target: &Target) -> f64 {
 }
 
 /// Points, radial power and RDF of an ensemble, with those of the target.
-fn result(title: &str, target: &Target, sets: &[PointSet], top: f64) -> Row {
+fn result(title: &str, target: &Target, sets: &[PointSet], top: f64) -> Vec<Panel> {
     let density = target.density();
     let analysis = Analysis::of(sets);
     let range = (FARTHEST * density.hexagonal_spacing()).min(0.5);
@@ -139,14 +152,18 @@ fn result(title: &str, target: &Target, sets: &[PointSet], top: f64) -> Row {
         Line::new("target", rdf_of(target), Style::Contrast),
         Line::of_curve("points", &analysis.rdf_within(range, bins), Style::Accent),
     ];
-    Row::new(
-        125.0,
-        vec![
-            panels::points(title, &sets[0]),
-            panels::power("", density, &powers, (HIGHEST, top)),
-            panels::rdf("", density, &rdfs, (FARTHEST, -0.5, 2.0)),
-        ],
-    )
+    vec![
+        panels::points(title, &sets[0]),
+        panels::power("", density, &powers, (HIGHEST, top)),
+        panels::rdf("", density, &rdfs, (FARTHEST, -0.5, 2.0)),
+    ]
+}
+
+/// A zone plate sampled by the points.
+fn plate(set: &PointSet) -> Outcome<Panel> {
+    let frame = Frame::new(250, 250).map_err(Failure::failed)?;
+    let image = rendered(&ZonePlate::new(&frame, PLATE), &frame, set, 1.0)?;
+    Ok(Panel::new(Axis::blank(), Axis::blank()).picture(picture(&image)))
 }
 
 fn power_of(target: &Target) -> Vec<[f64; 2]> {
