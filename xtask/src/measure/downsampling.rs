@@ -1,6 +1,8 @@
 //! The thesis's test at high sampling rates (§5.4.2): a large image made smaller, and how much noise
 //! that leaves.
 
+use std::hash::{DefaultHasher, Hasher as _};
+
 use bn_cli::{Failure, Outcome};
 use bn_core::{DVec2, PointSet, Seed, Unobserved};
 use bn_render::{
@@ -9,6 +11,7 @@ use bn_render::{
 };
 use bn_samplers::{Hexagonal, Sampler as _};
 use rand::RngExt;
+use serde::{Deserialize, Serialize};
 
 /// Side of the large image, rasterised once at its pixels' centres.
 const LARGE: u32 = 2560;
@@ -41,7 +44,7 @@ pub(crate) struct Downsampling {
 }
 
 /// PSNR of one rendering.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Psnr {
     /// Against the thesis's reference.
     pub(crate) value: f64,
@@ -88,6 +91,21 @@ impl Downsampling {
             Renderer::new(&self.picture, &pattern, &self.kernel, normalization, &self.frame);
         let image = renderer.image().map_err(Failure::failed)?.0;
         Ok(Psnr { value: psnr(&image, &self.reference)?, dense: psnr(&image, &self.dense)? })
+    }
+
+    /// A digest of these sets and of what their renderings are held against: where it is the same,
+    /// so are the values of [`Downsampling::psnr`].
+    pub(crate) fn digest(&self, sets: &[PointSet]) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        for image in [&self.reference, &self.dense] {
+            image.values().iter().for_each(|value| hasher.write_u32(value.to_bits()));
+        }
+        for set in sets {
+            hasher.write_usize(set.len());
+            let coordinates = set.points().iter().flat_map(|p| [p.x, p.y]);
+            coordinates.for_each(|x| hasher.write_u64(x.to_bits()));
+        }
+        hasher.finish()
     }
 
     /// PSNR of the reference itself against the denser one: more than this no pattern can have,

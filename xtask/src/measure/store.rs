@@ -3,12 +3,14 @@
 use std::fs;
 use std::path::PathBuf;
 
-use bn_cli::{Failure, Outcome, input, output_points};
+use bn_cli::{Failure, Outcome, input, output, output_points};
 use bn_core::PointSet;
 use bn_samplers::{CountRule, DefaultValue, Method};
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use super::Plan;
-use super::trace::TracePlace;
 use crate::thesis::RowSpec;
 
 /// A folder of point sets in double precision.
@@ -50,6 +52,34 @@ impl Store {
         let points = (method.counts != CountRule::Approximate).then_some(plan.n);
         Place { path, reading: self.reading, points }
     }
+
+    /// The place of what was measured of sets; `key` is a digest of all that decides it.
+    pub(crate) fn measured(&self, what: &str, key: u64) -> Notes {
+        Notes { path: self.root.join(what).join(format!("{key:016x}.json")), reading: self.reading }
+    }
+}
+
+/// The place of something that was measured.
+#[derive(Debug)]
+pub(crate) struct Notes {
+    path: PathBuf,
+    reading: bool,
+}
+
+impl Notes {
+    pub(crate) fn read<T: DeserializeOwned>(&self) -> Option<T> {
+        // A file that is damaged is no reason to stop: it is measured again.
+        serde_json::from_slice(&fs::read(&self.path).ok().filter(|_| self.reading)?).ok()
+    }
+
+    pub(crate) fn write(&self, measured: &impl Serialize) -> Outcome {
+        if let Some(folder) = self.path.parent() {
+            fs::create_dir_all(folder).map_err(Failure::failed)?;
+        }
+        output::write_to(&self.path, |w| {
+            Ok(serde_json::to_writer(w, measured).map_err(std::io::Error::from)?)
+        })
+    }
 }
 
 /// Every option of the method as `name=value`, given or default, fit for a file name.
@@ -81,8 +111,8 @@ fn escaped(text: &str) -> String {
 
 impl Place {
     /// The place of what the run told on its way to the set.
-    pub(super) fn trace(&self) -> TracePlace {
-        TracePlace { path: self.path.with_extension("trace.json"), reading: self.reading }
+    pub(super) fn trace(&self) -> Notes {
+        Notes { path: self.path.with_extension("trace.json"), reading: self.reading }
     }
 
     /// The set, if a good one is there.
@@ -138,6 +168,17 @@ mod tests {
         assert_ne!(plain, place(&store, &[("width", "1.5")], 64).path);
         assert_ne!(plain, place(&store, &[], 65).path);
         assert_eq!(escaped("a/b c%"), "a%2Fb%20c%25");
+    }
+
+    #[test]
+    fn measurements_come_back_bit_for_bit() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let notes = |reading| Store::new(folder.path().to_owned(), reading).measured("psnr", 7);
+        assert_eq!(notes(true).read::<Vec<f64>>(), None);
+        let measured = vec![0.1 + 0.2, 1e-300];
+        notes(true).write(&measured).expect("writable");
+        assert_eq!(notes(true).read(), Some(measured));
+        assert_eq!(notes(false).read::<Vec<f64>>(), None, "measured afresh");
     }
 
     #[test]

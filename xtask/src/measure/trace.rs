@@ -1,18 +1,17 @@
 //! How many iterations a method takes to spread points so far.
 
-use std::fs;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use bn_cli::{Failure, Outcome, output};
+use bn_cli::{Failure, Outcome};
 use bn_core::{DVec2, Observer, PointSet, Progress, Seed};
 use bn_geometry::Spacing;
 use bn_samplers::SampleError;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::store::Notes;
 use super::{Plan, Store};
 use crate::thesis::RowSpec;
 
@@ -36,7 +35,7 @@ pub(crate) fn runs(row: &RowSpec, plan: Plan, store: Option<&Store>) -> Outcome<
     let sampler = method.with_options(options).map_err(Failure::usage)?;
     let one = |set: u32| {
         let place = store.map(|store| store.place(method, row, plan, set).trace());
-        if let Some(reached) = place.as_ref().and_then(TracePlace::read) {
+        if let Some(reached) = place.as_ref().and_then(Notes::read) {
             return Ok(reached);
         }
         let trace = Trace::default();
@@ -84,29 +83,6 @@ impl Observer for Trace {
         note(&mut reached.d_avg, value(spacing.mean()));
         let all = reached.d_min.iter().chain(&reached.d_avg).all(Option::is_some);
         self.done.store(all || iteration >= MOST_ITERATIONS, Ordering::Relaxed);
-    }
-}
-
-/// Where what one run reached is kept.
-#[derive(Debug)]
-pub(super) struct TracePlace {
-    pub(super) path: PathBuf,
-    pub(super) reading: bool,
-}
-
-impl TracePlace {
-    fn read(&self) -> Option<Reached> {
-        // A file that is damaged is no reason to stop: the run is made again.
-        serde_json::from_slice(&fs::read(&self.path).ok().filter(|_| self.reading)?).ok()
-    }
-
-    fn write(&self, reached: &Reached) -> Outcome {
-        if let Some(folder) = self.path.parent() {
-            fs::create_dir_all(folder).map_err(Failure::failed)?;
-        }
-        output::write_to(&self.path, |w| {
-            Ok(serde_json::to_writer(w, reached).map_err(std::io::Error::from)?)
-        })
     }
 }
 

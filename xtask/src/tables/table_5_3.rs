@@ -7,8 +7,10 @@ use bn_cli::{Failure, Outcome};
 use bn_core::PointSet;
 use bn_render::Normalization;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::{Cell, Context, Row, Table, TableSpec};
+use crate::measure::Store;
 use crate::measure::downsampling::{Downsampling, Psnr};
 use crate::thesis::{Judgement, RowSpec};
 
@@ -52,6 +54,7 @@ struct Contender {
 }
 
 /// What a row's sets gave.
+#[derive(Serialize, Deserialize)]
 struct Values {
     /// By image and rate, normalised by density and plain.
     density: Vec<[Psnr; RATES.len()]>,
@@ -74,7 +77,9 @@ fn table(spec: &TableSpec, context: &Context<'_>) -> Outcome<Table> {
     let images = if context.workbench.plan().n < 4096 { QUICK_IMAGES } else { IMAGES };
     let measured = contenders.into_iter().zip(sets).map(|(contender, sets)| {
         let values = match sets {
-            Ok(sets) => Ok(Values::of(&contender, &sets, images, &test)?),
+            Ok(sets) => {
+                Ok(Values::kept(&contender, &sets, images, &test, context.workbench.store())?)
+            }
             Err(reason) => Err(reason),
         };
         Ok(Measured { contender, values })
@@ -119,6 +124,24 @@ fn contenders(context: &Context<'_>) -> Vec<Contender> {
 }
 
 impl Values {
+    /// The values that were measured before of the same sets, or new ones.
+    fn kept(
+        contender: &Contender,
+        sets: &[PointSet],
+        images: u32,
+        test: &Downsampling,
+        store: Option<&Store>,
+    ) -> Outcome<Self> {
+        let Some(store) = store else { return Self::of(contender, sets, images, test) };
+        let notes = store.measured(&format!("psnr_of_{images}_images"), test.digest(sets));
+        if let Some(values) = notes.read() {
+            return Ok(values);
+        }
+        let values = Self::of(contender, sets, images, test)?;
+        notes.write(&values)?;
+        Ok(values)
+    }
+
     fn of(
         contender: &Contender,
         sets: &[PointSet],
