@@ -1,6 +1,7 @@
 //! When a number of iterations agrees with the thesis.
 
 use super::judge::Basis;
+use super::values::PrintedCount;
 use super::{Judge, Judgement, Verdict};
 
 /// How a method's counts of iterations compare with the thesis's.
@@ -22,10 +23,11 @@ const ABSOLUTE: f64 = 1.0;
 
 impl Judge {
     /// Judges the iterations `reached` by each run (none: never; no runs: no such method) against
-    /// what the thesis prints under `key`, where -1 means never.
+    /// what the thesis prints under `key`.
     ///
     /// What the thesis reached in some runs only, or never, is a matter of single unlucky points,
-    /// so that the mean over the others says little: it is not judged for [`Counts::Alike`].
+    /// so that the mean over the others says little: it is not judged. Where all its runs got there,
+    /// all of ours must.
     pub(crate) fn judge_count(
         &self,
         table: &str,
@@ -34,8 +36,8 @@ impl Judge {
         reached: Option<&[Option<u64>]>,
         counts: Counts,
     ) -> Judgement {
-        let printed = self.thesis().value(table, method, key);
-        let thesis = printed.filter(|&count| count >= 0.0);
+        let printed = self.thesis().count(table, method, key);
+        let thesis = printed.and_then(PrintedCount::mean);
         let Some(reached) = reached else {
             return Judgement { thesis, ..Judgement::not_judged(None, Verdict::NotYet) };
         };
@@ -50,9 +52,9 @@ impl Judge {
         let complete = known.len() == reached.len() && !known.is_empty();
         let ours = complete.then(|| known.iter().sum::<f64>() / known.len() as f64);
         let judged = matches!(self.basis(), Basis::Thesis);
-        let expected = match (counts, thesis) {
-            (Counts::Alike, Some(count)) if complete => Some((count, count)),
-            (Counts::AtMost, Some(count)) => Some((0.0, count)),
+        let expected = match (counts, printed) {
+            (Counts::Alike, Some(PrintedCount::EveryRun(count))) => Some((count, count)),
+            (Counts::AtMost, Some(PrintedCount::EveryRun(count))) => Some((0.0, count)),
             _ => None,
         };
         let judgement = match expected.filter(|_| judged) {
@@ -92,8 +94,20 @@ mod tests {
         let of = |count| verdict("lloyd", "d_avg_0.925", Some(&[Some(count); 2]), Counts::Alike);
         assert_eq!([of(92), of(152)], [Verdict::Agrees; 2]);
         assert_eq!([of(91), of(153)], [Verdict::Outside; 2]);
-        let never = verdict("lloyd", "d_min_0.9", Some(&[None; 2]), Counts::Alike);
-        assert_eq!(never, Verdict::NotJudged);
+    }
+
+    #[test]
+    fn the_thesis_decides_what_is_judged() {
+        let of = |level, runs: &[_]| verdict("lloyd", level, Some(runs), Counts::Alike);
+        // All its runs got there.
+        assert_eq!(of("d_avg_0.925", &[Some(122), None]), Verdict::Outside);
+        assert_eq!(of("d_avg_0.925", &[None; 2]), Verdict::Outside);
+        // Some did, or none.
+        for level in ["d_min_0.8", "d_min_0.9"] {
+            for runs in [[Some(1); 2], [Some(1), None], [None; 2]] {
+                assert_eq!(of(level, &runs), Verdict::NotJudged, "{level}: {runs:?}");
+            }
+        }
     }
 
     #[test]

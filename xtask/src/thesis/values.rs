@@ -22,9 +22,33 @@ struct Entry {
     method: String,
     quantity: String,
     value: f64,
+    /// Not every run of the thesis got there.
+    #[serde(default)]
+    partly: bool,
     #[serde(default)]
     #[expect(dead_code, reason = "notes are for the reader of the file")]
     note: String,
+}
+
+/// What the thesis prints of the iterations that its runs took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PrintedCount {
+    /// The mean over its runs, all of which got there.
+    EveryRun(f64),
+    /// The same of those runs that got there.
+    SomeRuns(f64),
+    /// No run got there.
+    Never,
+}
+
+impl PrintedCount {
+    /// The number that stands in the table.
+    pub(crate) fn mean(self) -> Option<f64> {
+        match self {
+            Self::EveryRun(count) | Self::SomeRuns(count) => Some(count),
+            Self::Never => None,
+        }
+    }
 }
 
 impl Entry {
@@ -52,10 +76,21 @@ impl ThesisValues {
 
     /// The value in `table` (`"3.1"`, …, `"B"`) for the thesis's `method`, by quantity key.
     pub(crate) fn value(&self, table: &str, method: &str, quantity: &str) -> Option<f64> {
-        self.entries
-            .iter()
-            .find(|e| e.is_of(table) && e.method == method && e.quantity == quantity)
-            .map(|e| e.value)
+        self.entry(table, method, quantity).map(|e| e.value)
+    }
+
+    /// A number of iterations, likewise.
+    pub(crate) fn count(&self, table: &str, method: &str, quantity: &str) -> Option<PrintedCount> {
+        self.entry(table, method, quantity).map(|e| match (e.value, e.partly) {
+            (count, _) if count < 0.0 => PrintedCount::Never,
+            (count, true) => PrintedCount::SomeRuns(count),
+            (count, false) => PrintedCount::EveryRun(count),
+        })
+    }
+
+    fn entry(&self, table: &str, method: &str, quantity: &str) -> Option<&Entry> {
+        let is_it = |e: &&Entry| e.is_of(table) && e.method == method && e.quantity == quantity;
+        self.entries.iter().find(is_it)
     }
 
     /// The least and the greatest value that the thesis's tables print for the same number: they
@@ -117,6 +152,16 @@ mod tests {
         assert_eq!(thesis.methods_of("3.1").len(), 9);
         assert_eq!(thesis.methods_of("4.2").len(), 12);
         assert_eq!(thesis.methods_of("B").len(), 14);
+    }
+
+    #[test]
+    fn counts_say_how_many_runs_got_there() {
+        let thesis = thesis();
+        let count = |key: &str| thesis.count("4.1", "lloyd", &format!("iterations_to_{key}"));
+        assert_eq!(count("d_avg_0.925"), Some(PrintedCount::EveryRun(122.0)));
+        assert_eq!(count("d_min_0.8"), Some(PrintedCount::SomeRuns(425.0)));
+        assert_eq!(count("d_min_0.9"), Some(PrintedCount::Never));
+        assert_eq!(count("d_min_0.1"), None);
     }
 
     #[test]
