@@ -79,7 +79,7 @@ struct KnownDifference {
 pub(super) struct KnownPlace {
     /// The thesis's key of the row.
     pub(super) thesis: String,
-    /// By how many dB it is on the wrong side of another method.
+    /// By how many dB at most it is on the wrong side of another method.
     pub(super) value: f64,
     pub(super) reason: String,
 }

@@ -100,17 +100,20 @@ impl Judge {
         self.place(method).is_some()
     }
 
-    /// Judges a method's place in the ranking, `misplaced` dB off: fine up to a tie, or as far as is
-    /// known and explained.
+    /// Judges a method's place in the ranking, `misplaced` dB off: fine up to a tie, explained as far
+    /// as is known.
     pub(crate) fn judge_place(&self, method: &str, misplaced: f64) -> Judgement {
         if !matches!(self.basis(), Basis::Thesis) {
             return Judgement::not_judged(None, Verdict::NotJudged);
         }
-        let (expected, reason, good) = match self.place(method) {
-            Some(known) => (known.value, Some(known.reason.clone()), Verdict::Explained),
-            None => (0.0, None, Verdict::Agrees),
+        let up_to = |most, reason, good| {
+            Judgement::held_against(Some(misplaced), (0.0, most), TIE, reason, good)
         };
-        Judgement::held_against(Some(misplaced), (expected, expected), TIE, reason, good)
+        let plain = up_to(0.0, None, Verdict::Agrees);
+        match self.place(method).filter(|_| plain.verdict == Verdict::Outside) {
+            Some(known) => up_to(known.value, Some(known.reason.clone()), Verdict::Explained),
+            None => plain,
+        }
     }
 
     fn place(&self, method: &str) -> Option<&KnownPlace> {
@@ -148,8 +151,9 @@ mod tests {
         assert_eq!([verdict(1.0), verdict(1.1)], [Verdict::Agrees, Verdict::Outside]);
         for known in judge.places() {
             let at = |misplaced| judge.judge_place(&known.thesis, misplaced).verdict;
-            assert_eq!(at(known.value), Verdict::Explained);
-            assert_eq!(at(known.value + 1.1), Verdict::Outside);
+            assert_eq!([at(0.0), at(1.0)], [Verdict::Agrees; 2], "the thesis's own place");
+            assert_eq!([at(1.1), at(known.value)], [Verdict::Explained; 2]);
+            assert_eq!([at(known.value + 1.1), at(f64::NAN)], [Verdict::Outside; 2]);
         }
     }
 }
