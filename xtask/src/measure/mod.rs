@@ -21,12 +21,13 @@ use bn_cli::analysis::{Analysis, Estimate};
 use bn_core::PointSet;
 use bn_samplers::Method;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::thesis::{Quantity, RowSpec};
 pub(crate) use store::Store;
 
 /// How many points, in how many sets, from which seed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Plan {
     pub(crate) n: usize,
     pub(crate) sets: u32,

@@ -4,12 +4,15 @@ use std::fmt::Write as _;
 
 use super::markdown::{self, escape};
 use super::picture::Picture;
+use crate::tables::Tally;
 use crate::thesis::Verdict;
 
 /// A table as the report shows it.
 pub(super) struct TableEntry {
     /// Its number in the thesis.
     pub(super) id: &'static str,
+    /// How its values fared.
+    pub(super) tally: Tally,
     /// Its text in Markdown.
     pub(super) text: String,
 }
@@ -78,15 +81,14 @@ fn verdicts(tables: &[TableEntry]) -> String {
         Verdict::NotJudged,
         Verdict::NotYet,
     ];
-    let words = all.map(Verdict::word);
     let mut html = String::from("<table>\n<tr><th>table</th>");
-    for word in words {
+    for word in all.map(Verdict::word) {
         let _ = write!(html, "<th class=\"right\">{word}</th>");
     }
     html.push_str("</tr>\n");
     for table in tables {
         let _ = write!(html, "<tr><td><a href=\"#table-{0}\">{0}</a></td>", table.id);
-        for count in markdown::count(&table.text, words) {
+        for count in all.map(|verdict| table.tally.count(verdict)) {
             let _ = write!(html, "<td class=\"right\">{count}</td>");
         }
         html.push_str("</tr>\n");
@@ -139,7 +141,8 @@ mod tests {
     #[test]
     fn each_picture_is_kept_once_and_shown_twice() {
         let text = "## Table 5.3: x\n\n| m | verdict |\n| :-- | :-- |\n| a | ok |\n".to_owned();
-        let tables = [TableEntry { id: "5.3", text }];
+        let tally = serde_json::from_str(r#"{"agrees": 1}"#).expect("a tally");
+        let tables = [TableEntry { id: "5.3", tally, text }];
         let picture = Picture { size: (10.0, 5.0), uri: "data:image/png;base64,QQ==".to_owned() };
         let figures = [FigureEntry {
             id: "5.7",

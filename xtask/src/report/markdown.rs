@@ -88,17 +88,6 @@ pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// How often each verdict stands in a table's Markdown, in the order of `words`.
-pub(super) fn count<const N: usize>(text: &str, words: [&str; N]) -> [usize; N] {
-    let verdicts: Vec<String> = text
-        .lines()
-        .filter(|line| line.starts_with('|'))
-        .filter_map(|line| cells(line).pop())
-        .map(|cell| cell.split(" [").next().unwrap_or_default().to_owned())
-        .collect();
-    words.map(|word| verdicts.iter().filter(|verdict| *verdict == word).count())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,6 +111,5 @@ mod tests {
             assert!(html.contains(part), "{part}\n{html}");
         }
         assert!(!html.contains("---"), "{html}");
-        assert_eq!(count(&text, ["ok", "OUTSIDE", "explained"]), [1, 1, 0]);
     }
 }

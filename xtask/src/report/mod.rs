@@ -9,12 +9,13 @@ use std::path::PathBuf;
 use bn_cli::{Outcome, output};
 use clap::Args;
 
+use crate::tables::{Kept, Tally};
 use crate::{figures, tables, workspace};
 use html::{FigureEntry, TableEntry};
 use picture::Picture;
 
 /// One HTML page of all tables and figures, target/thesis/report.html, from the files that they
-/// wrote; what is missing is made
+/// wrote; what is missing is made, and tables of other points or by another build are made again
 #[derive(Debug, Args)]
 pub(crate) struct ReportArgs {
     /// From the quick tables and figures, into target/thesis/quick/
@@ -53,12 +54,15 @@ pub(crate) fn run(args: &ReportArgs) -> Outcome {
     let page = html::document(&note, &tables, &figures);
     output::write_file(&path, |w| Ok(w.write_all(page.as_bytes())?))?;
     eprintln!("wrote {} ({:.1} MB)", path.display(), page.len() as f64 / 1e6);
-    Ok(())
+    Tally::sum(tables.iter().map(|table| &table.tally)).outcome()
 }
 
 fn table_entries(args: &ReportArgs) -> Outcome<Vec<TableEntry>> {
-    let made = tables::texts(args.quick, args.fresh)?;
-    Ok(made.into_iter().map(|(id, text)| TableEntry { id, text }).collect())
+    let made = tables::all(args.quick, args.fresh)?;
+    Ok(made
+        .into_iter()
+        .map(|(id, Kept { tally, text, .. })| TableEntry { id, tally, text })
+        .collect())
 }
 
 fn figure_entries(args: &ReportArgs) -> Outcome<Vec<FigureEntry>> {

@@ -1,7 +1,7 @@
 //! Tables as files.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::Context as _;
 use bn_cli::{Failure, Outcome, output};
@@ -10,19 +10,20 @@ use serde_json::json;
 use super::{Table, markdown};
 use crate::measure::Plan;
 
-/// Where the table `id` is kept as Markdown.
-pub(super) fn place(folder: &Path, id: &str) -> PathBuf {
-    folder.join(match id {
-        "B" => "appendix_b.md".to_owned(),
-        _ => format!("table_{}.md", id.replace('.', "_")),
-    })
+/// The stem of the table's files.
+pub(super) fn name(id: &str) -> String {
+    match id {
+        "B" => "appendix_b".to_owned(),
+        _ => format!("table_{}", id.replace('.', "_")),
+    }
 }
 
 /// Writes the table as Markdown into `folder`; the text.
 pub(super) fn table(folder: &Path, table: &Table, plan: Plan) -> Outcome<String> {
     let text = markdown::render(table, plan);
     make_folder(folder)?;
-    output::write_file(&place(folder, table.id), |w| Ok(w.write_all(text.as_bytes())?))?;
+    let path = folder.join(format!("{}.md", name(table.id)));
+    output::write_file(&path, |w| Ok(w.write_all(text.as_bytes())?))?;
     Ok(text)
 }
 

@@ -108,7 +108,7 @@ pub(crate) struct Judgement {
 }
 
 /// How a value fares.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Verdict {
     /// Within the tolerance of the thesis's value, or of the quick tables' expected one.
