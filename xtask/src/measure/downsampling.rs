@@ -93,10 +93,11 @@ impl Downsampling {
         Ok(Psnr { value: psnr(&image, &self.reference)?, dense: psnr(&image, &self.dense)? })
     }
 
-    /// A digest of these sets and of what their renderings are held against: where it is the same,
-    /// so are the values of [`Downsampling::psnr`].
-    pub(crate) fn digest(&self, sets: &[PointSet]) -> u64 {
+    /// A digest of these sets, of what their renderings are held against and of `how` that is done:
+    /// where it is the same, so are the values of [`Downsampling::psnr`].
+    pub(crate) fn digest(&self, sets: &[PointSet], how: u64) -> u64 {
         let mut hasher = DefaultHasher::new();
+        hasher.write_u64(how);
         for image in [&self.reference, &self.dense] {
             image.values().iter().for_each(|value| hasher.write_u32(value.to_bits()));
         }

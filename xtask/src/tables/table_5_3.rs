@@ -1,11 +1,13 @@
 //! Table 5.3: PSNR of an image made smaller, at high sampling rates.
 
+use std::hash::{DefaultHasher, Hasher as _};
 use std::time::Instant;
 
 use bn_cli::analysis::Estimate;
 use bn_cli::{Failure, Outcome};
-use bn_core::PointSet;
+use bn_core::{PointSet, Seed, Unobserved};
 use bn_render::Normalization;
+use bn_samplers::{Sampler as _, Stochastic};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -75,12 +77,13 @@ fn table(spec: &TableSpec, context: &Context<'_>) -> Outcome<Table> {
     let wanted: Vec<_> = contenders.iter().map(|c| (c.spec.clone(), c.most_sets)).collect();
     let sets = context.workbench.point_sets(&wanted)?;
     let images = if context.workbench.plan().n < 4096 { QUICK_IMAGES } else { IMAGES };
+    let cache = context.workbench.store().map(|store| Cache::new(store, &test, images));
+    let cache = cache.transpose()?;
     let measured = contenders.into_iter().zip(sets).map(|(contender, sets)| {
-        let values = match sets {
-            Ok(sets) => {
-                Ok(Values::kept(&contender, &sets, images, &test, context.workbench.store())?)
-            }
-            Err(reason) => Err(reason),
+        let values = match (sets, &cache) {
+            (Ok(sets), Some(cache)) => Ok(cache.values(&contender, &sets)?),
+            (Ok(sets), None) => Ok(Values::told(&contender, &sets, images, &test)?),
+            (Err(reason), _) => Err(reason),
         };
         Ok(Measured { contender, values })
     });
@@ -124,31 +127,26 @@ fn contenders(context: &Context<'_>) -> Vec<Contender> {
 }
 
 impl Values {
-    /// The values that were measured before of the same sets, or new ones.
-    fn kept(
-        contender: &Contender,
-        sets: &[PointSet],
-        images: u32,
-        test: &Downsampling,
-        store: Option<&Store>,
-    ) -> Outcome<Self> {
-        let Some(store) = store else { return Self::of(contender, sets, images, test) };
-        let notes = store.measured(&format!("psnr_of_{images}_images"), test.digest(sets));
-        if let Some(values) = notes.read() {
-            return Ok(values);
-        }
-        let values = Self::of(contender, sets, images, test)?;
-        notes.write(&values)?;
-        Ok(values)
-    }
-
-    fn of(
+    /// The values of a row, and a word on how long that took.
+    fn told(
         contender: &Contender,
         sets: &[PointSet],
         images: u32,
         test: &Downsampling,
     ) -> Outcome<Self> {
         let start = Instant::now();
+        let values = Self::of(sets, images, test)?;
+        eprintln!(
+            "{:<24} {} images from {} sets in {:.2} s",
+            contender.spec.method,
+            2 * images as usize * RATES.len(),
+            sets.len(),
+            start.elapsed().as_secs_f64()
+        );
+        Ok(values)
+    }
+
+    fn of(sets: &[PointSet], images: u32, test: &Downsampling) -> Outcome<Self> {
         let image = |index: u32, normalization| -> Outcome<[Psnr; RATES.len()]> {
             let set = &sets[index as usize % sets.len()];
             let at = |rate: u32| test.psnr(set, index, f64::from(rate), normalization);
@@ -159,20 +157,58 @@ impl Values {
             (0..images).into_par_iter().map(|index| image(index, normalization)).collect()
         };
         let (density, plain) = (all(Normalization::Density)?, all(Normalization::None)?);
-        let low_power = low_power(sets)?;
-        eprintln!(
-            "{:<24} {} images from {} sets in {:.2} s",
-            contender.spec.method,
-            2 * images as usize * RATES.len(),
-            sets.len(),
-            start.elapsed().as_secs_f64()
-        );
-        Ok(Self { density, plain, low_power })
+        Ok(Self { density, plain, low_power: low_power(sets)? })
+    }
+
+    /// A digest of every number.
+    fn digest(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        for image in self.density.iter().chain(&self.plain) {
+            let numbers = image.iter().flat_map(|psnr| [psnr.value, psnr.dense]);
+            numbers.for_each(|x| hasher.write_u64(x.to_bits()));
+        }
+        hasher.write_u64(self.low_power.to_bits());
+        hasher.finish()
     }
 
     /// Mean and error over the images, of what `value` picks.
     fn mean(images: &[[Psnr; RATES.len()]], value: impl Fn(&[Psnr]) -> f64) -> Option<Estimate> {
         Estimate::mean(&images.iter().map(|image| value(image)).collect::<Vec<_>>())
+    }
+}
+
+/// Values that are kept by a digest of all that decides them.
+struct Cache<'a> {
+    store: &'a Store,
+    test: &'a Downsampling,
+    images: u32,
+    /// A digest of what is measured of a few points: other rates, shifts, bands, kernels or
+    /// normalisations give something else.
+    how: u64,
+}
+
+/// How many points those are.
+const PROBE: usize = 256;
+
+impl<'a> Cache<'a> {
+    fn new(store: &'a Store, test: &'a Downsampling, images: u32) -> Outcome<Self> {
+        let probe = Stochastic::default()
+            .sample(PROBE, Seed::new(1), &Unobserved)
+            .map_err(Failure::failed)?;
+        let how = Values::of(&[probe.points], 1, test)?.digest();
+        Ok(Self { store, test, images, how })
+    }
+
+    /// The values that were measured before of the same sets in the same way, or new ones.
+    fn values(&self, contender: &Contender, sets: &[PointSet]) -> Outcome<Values> {
+        let folder = format!("psnr_of_{}_images", self.images);
+        let notes = self.store.measured(&folder, self.test.digest(sets, self.how));
+        if let Some(values) = notes.read() {
+            return Ok(values);
+        }
+        let values = Values::told(contender, sets, self.images, self.test)?;
+        notes.write(&values)?;
+        Ok(values)
     }
 }
 
@@ -305,4 +341,30 @@ fn reference(test: &Downsampling) -> Outcome<Row> {
 /// A value without an error.
 fn alone(value: f64) -> Estimate {
     Estimate { value, std_error: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_measured_number_decides_what_is_kept() {
+        let values = |change: &dyn Fn(&mut Values)| {
+            let psnr = |i: usize| Psnr { value: 30.0 + i as f64, dense: 40.0 + i as f64 };
+            let image: [Psnr; RATES.len()] = std::array::from_fn(psnr);
+            let mut values = Values { density: vec![image], plain: vec![image], low_power: 0.5 };
+            change(&mut values);
+            values.digest()
+        };
+        let mut digests = vec![values(&|_| {}), values(&|v| v.low_power = 0.6)];
+        for rate in 0..RATES.len() {
+            digests.push(values(&|v| v.density[0][rate].value += 1e-9));
+            digests.push(values(&|v| v.density[0][rate].dense += 1e-9));
+            digests.push(values(&|v| v.plain[0][rate].value += 1e-9));
+        }
+        let count = digests.len();
+        digests.sort_unstable();
+        digests.dedup();
+        assert_eq!(digests.len(), count);
+    }
 }
