@@ -16,7 +16,7 @@ use super::{Effort, SEED};
 const MOMENTS: [f64; 6] = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
 /// A run ends when it took a little longer than the last of them.
 const PATIENCE: f64 = 31.0;
-/// Points are kept when a run has become this many times older.
+/// Between the moments, points are kept when a run has become this many times older.
 const RATIO: f64 = 1.2;
 
 const COLUMNS: &[&str] = &[
@@ -118,6 +118,22 @@ struct Recorder {
     states: Mutex<Vec<(Duration, Vec<DVec2>)>>,
 }
 
+/// Adds a state, and drops the one before it unless it is the last at a moment of [`MOMENTS`] or
+/// [`RATIO`] times older than those that are kept.
+fn add<T>(states: &mut Vec<(Duration, T)>, now: Duration, state: T) {
+    let at =
+        |from: Duration| MOMENTS.iter().any(|&m| (from..now).contains(&Duration::from_secs_f64(m)));
+    let is_dropped = match &states[..] {
+        [.., (before, _), (last, _)] => !at(*last) && *last <= before.mul_f64(RATIO),
+        // The first is kept.
+        _ => false,
+    };
+    if is_dropped {
+        states.pop();
+    }
+    states.push((now, state));
+}
+
 impl Recorder {
     fn new(patience: Duration) -> Self {
         Self { start: Instant::now(), patience, states: Mutex::default() }
@@ -133,17 +149,32 @@ impl Observer for Recorder {
     }
 
     fn iterated(&self, _: u64, points: &dyn Fn() -> Vec<DVec2>) {
-        let now = self.start.elapsed();
-        let mut states = self.states.lock().expect("no run panicked");
-        if states.last().is_none_or(|(before, _)| now > before.mul_f64(RATIO)) {
-            states.push((now, points()));
-        }
+        let (now, points) = (self.start.elapsed(), points());
+        add(&mut self.states.lock().expect("no run panicked"), now, points);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_last_state_before_each_moment_is_kept_and_few_others() {
+        for step in [1, 37, 900, 7000] {
+            let mut states = Vec::new();
+            for i in 0..=31_000 / step {
+                add(&mut states, Duration::from_millis(i * step), i);
+            }
+            for moment in MOMENTS {
+                let last = states.iter().rfind(|(time, _)| time.as_secs_f64() <= moment);
+                let want = (1e3 * moment) as u64 / step;
+                assert_eq!(last.map(|&(_, i)| i), Some(want), "every {step} ms, at {moment} s");
+            }
+            assert_eq!(states.last().map(|&(_, i)| i), Some(31_000 / step));
+            assert!(states.len() < 80, "{} states", states.len());
+            assert!(states.is_sorted());
+        }
+    }
 
     #[test]
     fn a_run_is_followed_and_ended() {
