@@ -9,6 +9,22 @@ use bn_core::io::{self, Format, WriteError};
 
 use crate::{Failure, Outcome, output};
 
+/// Points in all sets of a run together: 3 GiB of coordinates.
+const MAX_TOTAL: u64 = 200_000_000;
+
+/// Refuses more points than a run can hold, before any work is done.
+///
+/// # Errors
+/// If `sets` sets of `n` points are more than 200 million points in all.
+pub fn check_total(n: u64, sets: u32) -> Outcome {
+    if n.saturating_mul(u64::from(sets)) <= MAX_TOTAL {
+        return Ok(());
+    }
+    Err(Failure::misuse(format!(
+        "{sets} sets of {n} points are more than {MAX_TOTAL} points in all; make them in several runs"
+    )))
+}
+
 /// Writes the sets: into one file if the format holds several sets or there is only one, else into
 /// `name_0.ext`, `name_1.ext`, …; `{i}` in the name asks for one file a set and says where the
 /// index goes. Standard output (`-`) is `.txt` for one set and `.dat` for several.

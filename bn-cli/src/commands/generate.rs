@@ -42,9 +42,6 @@ struct Generate {
     json: bool,
 }
 
-/// Points in all sets together: 3 GiB of coordinates.
-const MAX_TOTAL: u64 = 200_000_000;
-
 pub(super) fn command() -> Command {
     Command::new("generate")
         .about("Make patterns: `bn generate METHOD`")
@@ -83,12 +80,7 @@ pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
     let options = given_options(method.options, matches);
     let given = given_values(method, &options)?;
     let sampler = method.with_values(given).map_err(Failure::usage)?;
-    if u64::from(args.n) * u64::from(args.sets) > MAX_TOTAL {
-        return Err(Failure::misuse(format!(
-            "{} sets of {} points are more than {MAX_TOTAL} points in all; make them in several runs",
-            args.sets, args.n
-        )));
-    }
+    output_points::check_total(u64::from(args.n), args.sets)?;
     if args.json && args.output == Path::new("-") {
         return Err(Failure::misuse(
             "--json needs standard output for itself; name a file with -o",

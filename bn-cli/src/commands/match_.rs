@@ -84,6 +84,8 @@ pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
     let first = args.start.as_deref().map(|file| start(file, args.n)).transpose()?;
     let n = args.n.or(first.as_ref().map(|points| points.len() as u32));
     let wanted = args.target.target(n, None)?;
+    let points = wanted.target.density().points_per_unit_area() as u64;
+    output_points::check_total(points, args.sets)?;
     let (objection, warnings) = wanted.objection();
     let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     if let Some(objection) = objection {

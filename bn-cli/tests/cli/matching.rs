@@ -248,6 +248,18 @@ fn curves_that_were_written_can_be_read() {
 }
 
 #[test]
+fn more_points_than_a_run_can_hold_are_refused() {
+    let folder = Folder::new();
+    for words in ["match --target step", "generate step"] {
+        let words = format!("{words} -n 10000 --sets 20001 --iterations 0 -o never.npy");
+        folder.bn(&words).refused(2, &["20001 sets of 10000 points", "200000000", "several runs"]);
+    }
+    // As many as the models have.
+    folder.bn("generate stochastic -n 3000 -o model.rps").done();
+    folder.bn("match --like model.rps --sets 70000 -o never.npy").refused(2, &["3000 points"]);
+}
+
+#[test]
 fn a_match_goes_on_from_a_file() {
     let folder = Folder::new();
     folder.bn("generate jittered -n 100 -o start.npy").done();
