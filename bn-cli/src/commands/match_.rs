@@ -14,10 +14,10 @@ use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
 use super::Global;
-use super::method_values::{given_options, option_argument, option_value};
+use super::method_values::{given_options, only_set, option_argument, option_value};
 use super::target::{TargetArgs, Wanted};
 use crate::progress_bar::Bar;
-use crate::{Failure, Outcome, input, output, output_points};
+use crate::{Failure, Outcome, output, output_points};
 
 #[derive(Debug, Args)]
 pub(super) struct Match {
@@ -29,7 +29,7 @@ pub(super) struct Match {
     /// Seed of the random numbers; the same seed gives the same bytes
     #[arg(short, long, value_name = "SEED", default_value = "1")]
     seed: u64,
-    /// Number of sets, each from its own random numbers
+    /// Number of sets, each from its own random numbers; with --start only annealing makes several
     #[arg(short = 'm', long, value_name = "K", default_value = "1",
           value_parser = clap::value_parser!(u32).range(1..=100_000))]
     sets: u32,
@@ -39,7 +39,7 @@ pub(super) struct Match {
     /// Format of the output (default: by the file's extension; txt or dat on standard output)
     #[arg(long, value_name = "FORMAT")]
     format: Option<Format>,
-    /// Go on from these points instead of random ones
+    /// Go on from the points of this file, one set, instead of random ones
     #[arg(long, value_name = "FILE")]
     start: Option<PathBuf>,
     /// Come as near as possible to a target that no point set can have, and say how near
@@ -81,6 +81,13 @@ pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
         ));
     }
     output_points::check(&args.output, args.format, args.sets as usize)?;
+    let is_random = args.start.is_none() || matches!(algorithm, Algorithm::Annealing(_));
+    if args.sets > 1 && !is_random {
+        return Err(Failure::misuse(
+            "--start with several --sets: all would be equal, since of the algorithms only annealing \
+             takes random numbers then",
+        ));
+    }
     let first = args.start.as_deref().map(|file| start(file, args.n)).transpose()?;
     let n = args.n.or(first.as_ref().map(|points| points.len() as u32));
     let wanted = args.target.target(n, None)?;
@@ -146,7 +153,7 @@ fn words(reports: &[Report], name: &str) -> impl Iterator<Item = &'static str> {
 
 /// The points to go on from, as many as are wanted.
 fn start(file: &Path, n: Option<u32>) -> Outcome<PointSet> {
-    let points = input::read(file, None, false)?.into_sets().swap_remove(0);
+    let points = only_set(file)?;
     match n {
         Some(n) if n as usize != points.len() => Err(Failure::misuse(format!(
             "--start {}: it has {} points, but -n is {n}",

@@ -275,6 +275,23 @@ fn a_match_goes_on_from_a_file() {
 }
 
 #[test]
+fn a_start_is_one_set_and_makes_several_only_with_random_numbers() {
+    let folder = Folder::new();
+    folder.bn("generate jittered -n 64 --sets 2 -o two.npy").done();
+    folder.bn("generate jittered -n 64 -o one.npy").done();
+    let words = "match --target step -n 64 --iterations 4 -o x.npy";
+    folder.bn(&format!("{words} --start two.npy")).refused(2, &["two.npy", "2 sets"]);
+    for name in ["spectral", "force", "gradient"] {
+        let several = format!("{words} --start one.npy --algorithm {name}");
+        folder.bn(&format!("{several} --sets 2")).refused(2, &["--start", "equal", "annealing"]);
+        folder.bn(&several).done();
+    }
+    folder.bn(&format!("{words} --start one.npy --algorithm annealing --sets 2")).done();
+    folder.bn("convert x.npy set-{i}.rps").done();
+    assert_ne!(folder.read("set-0.rps"), folder.read("set-1.rps"));
+}
+
+#[test]
 fn realizability_has_its_contract_keys() {
     let folder = Folder::new();
     // ν_max = √(400/π) = 11.284.
