@@ -66,6 +66,14 @@ impl Drop for Bar {
     }
 }
 
+/// A figure of merit in few characters, however small or large.
+fn figure(value: f64) -> String {
+    match value.abs() {
+        size if size != 0.0 && !(0.01..1e5).contains(&size) => format!("{value:.3e}"),
+        _ => format!("{value:.4}"),
+    }
+}
+
 impl Observer for Bar {
     fn observe(&self, progress: &Progress<'_>) -> ControlFlow<()> {
         if self.bar.is_hidden() {
@@ -83,10 +91,32 @@ impl Observer for Bar {
         let mut message = progress.stage.to_owned();
         for (name, value) in progress.figures {
             // Writing to a string cannot fail.
-            let _ = write!(message, " {name} {value:.4}");
+            let _ = write!(message, " {name} {}", figure(*value));
         }
         self.bar.set_message(message);
         self.bar.set_position(progress.done);
         ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_keep_their_digits() {
+        for (value, want) in [
+            (0.0, "0.0000"),
+            (0.65432, "0.6543"),
+            (-12.5, "-12.5000"),
+            (0.01, "0.0100"),
+            (9.8765e-3, "9.876e-3"),
+            (-4.2e-6, "-4.200e-6"),
+            (123_456.0, "1.235e5"),
+            (f64::NAN, "NaN"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(figure(value), want);
+        }
     }
 }
