@@ -3,13 +3,10 @@
 //! CSV with a header that says what the columns are: `nu,power` (cycles per unit), `nu_rel,power`
 //! (√n/2), `r,g` (unit lengths) or `r_rel,g` (`d_hex`).
 
-use std::path::Path;
-
-use anyhow::Context;
 use bn_core::{Density, NormalizedDistance, NormalizedFrequency};
 use bn_spectral::Target;
 
-use crate::input::Stdin;
+use crate::input::Source;
 use crate::{Failure, Outcome};
 
 /// What a header says about the columns.
@@ -70,45 +67,20 @@ pub(crate) fn looks_like_curve(bytes: &[u8]) -> bool {
 /// Bytes in which a header has to end.
 const LONGEST_HEADER: usize = 64;
 
-/// The first bytes of a file, enough for [`looks_like_curve`]; none if it can't be read.
-pub(crate) fn start_of(path: &Path) -> Vec<u8> {
-    use std::io::Read;
-    let mut start = Vec::with_capacity(LONGEST_HEADER);
-    // Whoever reads the file in earnest will tell why it can't be read.
-    let _ = std::fs::File::open(path)
-        .and_then(|file| file.take(LONGEST_HEADER as u64).read_to_end(&mut start));
-    start
-}
-
-/// The curve of a file as a target at `density`.
+/// The curve of a file, a pipe or standard input as a target at `density`.
 ///
 /// # Errors
-/// A file that can't be read, a header that is none of the four, a line that is no pair of numbers,
-/// or samples that don't make a target: bad input.
-pub(crate) fn read(path: &Path, density: Density) -> Outcome<Target> {
-    let name = path.display();
-    if path.as_os_str() == "-" {
-        return read_stdin(Stdin::open()?, density);
-    }
-    let size = std::fs::metadata(path).map_or(0, |data| data.len());
-    if size > LONGEST {
-        return Err(Failure::misuse(format!("{name}: {size} bytes are too many for a curve")));
-    }
-    let text = std::fs::read_to_string(path)
-        .with_context(|| format!("cannot read {name}"))
-        .map_err(Failure::usage)?;
-    parse(&text, density).map_err(|failure| failure.context(name.to_string()))
-}
-
-/// The curve that comes from standard input, as [`read`].
-pub(crate) fn read_stdin(stdin: Stdin, density: Density) -> Outcome<Target> {
-    let bytes = stdin.into_bytes(LONGEST)?;
+/// What can't be read, a header that is none of the four, a line that is no pair of numbers, or
+/// samples that don't make a target: bad input.
+pub(crate) fn read(source: Source, density: Density) -> Outcome<Target> {
+    let name = source.name();
+    let bytes = source.into_bytes(LONGEST)?;
     let text = if bytes.len() as u64 > LONGEST {
         Err(Failure::misuse(format!("more than {LONGEST} bytes are too many for a curve")))
     } else {
         std::str::from_utf8(&bytes).map_err(Failure::usage)
     };
-    text.and_then(|text| parse(text, density)).map_err(|failure| failure.context("standard input"))
+    text.and_then(|text| parse(text, density)).map_err(|failure| failure.context(name))
 }
 
 fn parse(text: &str, density: Density) -> Outcome<Target> {

@@ -1,7 +1,8 @@
-//! Point files and standard input.
+//! Point files, pipes and standard input.
 
+use std::fs::{File, Metadata};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use bn_core::Ensemble;
@@ -11,36 +12,48 @@ use crate::{Failure, Outcome};
 
 /// The sets of a file, or of standard input for `-`.
 ///
-/// Without `format` a file's extension decides; on standard input the contents do.
+/// Without `format` a file's extension decides; of standard input and of pipes whose name tells no
+/// format, the contents do.
 ///
 /// # Errors
 /// A file that is bad or absent is bad input; a disk that fails is a failure.
 pub fn read(path: &Path, format: Option<Format>, wrap: bool) -> Outcome<Ensemble> {
     let options = ReadOptions { wrap };
-    if path.as_os_str() == "-" {
-        return read_stdin(format, options);
+    if can_be_read_again(path) {
+        return io::read_path(path, format, options).map_err(failure);
     }
-    io::read_path(path, format, options).map_err(failure)
+    Source::open(path)?.into_sets(format, options)
 }
 
-fn read_stdin(format: Option<Format>, options: ReadOptions) -> Outcome<Ensemble> {
-    Stdin::open()?.into_sets(format, options)
+/// Whether the path is no pipe: a file, or nothing that can be read at all.
+fn can_be_read_again(path: &Path) -> bool {
+    let is_pipe = |data: Metadata| !data.is_file() && !data.is_dir();
+    path.as_os_str() != "-" && !path.metadata().is_ok_and(is_pipe)
 }
 
-/// Standard input, of which the first bytes can be looked at before it is read as something.
-pub(crate) struct Stdin {
+/// A file, a pipe or standard input, of which the first bytes can be looked at before it is read as
+/// something.
+pub(crate) struct Source {
+    path: PathBuf,
     head: Vec<u8>,
-    rest: std::io::StdinLock<'static>,
+    rest: Box<dyn Read>,
 }
 
 /// Bytes to tell formats by.
 const HEAD: u64 = 1 << 10;
 
-impl Stdin {
-    pub(crate) fn open() -> Outcome<Self> {
-        let (mut head, mut rest) = (Vec::new(), std::io::stdin().lock());
-        rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(unreadable)?;
-        Ok(Self { head, rest })
+impl Source {
+    /// Opens a file, or standard input for `-`.
+    pub(crate) fn open(path: &Path) -> Outcome<Self> {
+        let mut rest: Box<dyn Read> = if path.as_os_str() == "-" {
+            Box::new(std::io::stdin().lock())
+        } else {
+            Box::new(File::open(path).map_err(|error| unreadable(path, error))?)
+        };
+        let mut head = Vec::new();
+        let read = rest.by_ref().take(HEAD).read_to_end(&mut head);
+        read.map_err(|error| unreadable(path, error))?;
+        Ok(Self { path: path.to_owned(), head, rest })
     }
 
     /// The first bytes.
@@ -48,27 +61,48 @@ impl Stdin {
         &self.head
     }
 
-    /// All sets, read as a stream.
+    /// What messages call it.
+    pub(crate) fn name(&self) -> String {
+        name(&self.path)
+    }
+
+    /// All sets, read as a stream, in the format that [`read`] would take.
     pub(crate) fn into_sets(
         self,
         format: Option<Format>,
         options: ReadOptions,
     ) -> Outcome<Ensemble> {
+        if can_be_read_again(&self.path) {
+            return io::read_path(&self.path, format, options).map_err(failure);
+        }
+        let format = format.or_else(|| Format::from_path(&self.path).ok());
         let format = format.unwrap_or_else(|| recognize(&self.head));
-        io::read(format, "standard input", self.head.chain(self.rest), options).map_err(failure)
+        io::read(format, &self.name(), self.head.chain(self.rest), options).map_err(failure)
     }
 
     /// All bytes, or one more than `most`.
     pub(crate) fn into_bytes(self, most: u64) -> Outcome<Vec<u8>> {
-        let Self { head: mut bytes, rest } = self;
+        let Self { path, head: mut bytes, rest } = self;
         let left = (most + 1).saturating_sub(bytes.len() as u64);
-        rest.take(left).read_to_end(&mut bytes).map_err(unreadable)?;
+        rest.take(left).read_to_end(&mut bytes).map_err(|error| unreadable(&path, error))?;
         Ok(bytes)
     }
 }
 
-fn unreadable(error: std::io::Error) -> Failure {
-    Failure::failed(anyhow!(error).context("cannot read standard input"))
+fn name(path: &Path) -> String {
+    if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+fn unreadable(path: &Path, error: std::io::Error) -> Failure {
+    let is_usage = leads_nowhere(&error);
+    let error = anyhow!(error).context(format!("cannot read {}", name(path)));
+    if is_usage { Failure::usage(error) } else { Failure::failed(error) }
+}
+
+/// Whether the name is at fault, not the disk.
+fn leads_nowhere(error: &std::io::Error) -> bool {
+    use std::io::ErrorKind::{IsADirectory, NotADirectory, NotFound};
+    matches!(error.kind(), NotFound | IsADirectory | NotADirectory)
 }
 
 /// The format that bytes without a name are most likely in: by the mark of `.npy`, `.json` or `.eps`,
@@ -93,7 +127,6 @@ fn recognize(head: &[u8]) -> Format {
 /// A disk that fails is a failure; bad contents and names that lead nowhere are bad input. Names
 /// the option where the mend is one.
 fn failure(error: ReadError) -> Failure {
-    use std::io::ErrorKind::{IsADirectory, NotADirectory, NotFound};
     match error.problem() {
         ReadProblem::OutOfDomain { .. } => Failure::misuse(format!("{error} (--wrap)")),
         ReadProblem::Format(_) => {
@@ -101,9 +134,7 @@ fn failure(error: ReadError) -> Failure {
         }
         // Its text is part of the error's own.
         ReadProblem::Npy(_) => Failure::misuse(error),
-        ReadProblem::Io(io) if !matches!(io.kind(), NotFound | IsADirectory | NotADirectory) => {
-            Failure::failed(anyhow!(error))
-        }
+        ReadProblem::Io(io) if !leads_nowhere(io) => Failure::failed(anyhow!(error)),
         _ => Failure::usage(anyhow!(error)),
     }
 }

@@ -7,7 +7,7 @@ use bn_core::{Density, PointSet};
 use bn_spectral::{Realizability, SinglePeak, Target, Warning, highest_step};
 use clap::Args;
 
-use crate::input::Stdin;
+use crate::input::Source;
 use crate::{Failure, Outcome, curve_file, input};
 
 /// Which spectrum.
@@ -67,19 +67,14 @@ impl TargetArgs {
         let target = match (&*name, target) {
             ("step", _) => self.step(density)?,
             ("single-peak", _) => self.single_peak(density)?,
-            (_, Some(path)) if file.is_none() => curve_file::read(path, density)?,
-            ("-", _) => {
-                let stdin = Stdin::open()?;
-                if !curve_file::looks_like_curve(stdin.head()) {
-                    let sets = stdin.into_sets(None, ReadOptions::default())?;
+            (_, Some(path)) => {
+                let source = Source::open(path)?;
+                if file.is_some() && !curve_file::looks_like_curve(source.head()) {
+                    let sets = source.into_sets(None, ReadOptions::default())?;
                     return imitated(sets.sets(), name, n);
                 }
-                curve_file::read_stdin(stdin, density)?
+                curve_file::read(source, density)?
             }
-            (_, Some(path)) if curve_file::looks_like_curve(&curve_file::start_of(path)) => {
-                curve_file::read(path, density)?
-            }
-            (_, Some(path)) => return imitated(&all_sets(&[path.to_owned()])?, name, n),
             (_, None) if !self.like.is_empty() => {
                 let names: Vec<_> = self.like.iter().map(|f| f.display().to_string()).collect();
                 return imitated(&all_sets(&self.like)?, names.join(" "), n);

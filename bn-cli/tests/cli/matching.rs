@@ -86,6 +86,13 @@ fn curves_come_by_pipe_too() {
     // Points on standard input are judged by their spectrum.
     let points = verdict("realize points.txt --json", b"");
     assert_eq!(verdict("realize - --json", &folder.read("points.txt")), points);
+    // What can be read but once and has a name all the same, as in `bn realize <(bn analyze …)`.
+    if cfg!(unix) {
+        assert_eq!(verdict("realize /dev/stdin -n 400 --json", &piped), from_file);
+        assert_eq!(verdict("realize --target /dev/stdin -n 400 --json", &piped), from_file);
+        assert_eq!(verdict("realize /dev/stdin --json", &folder.read("points.txt")), points);
+        assert_eq!(verdict("realize --like /dev/stdin --json", &folder.read("points.txt")), points);
+    }
     let words = "match --target - -n 100 --iterations 2 --best-effort";
     assert_eq!(folder.bn_with(words, &piped, &[]).done().text().lines().count(), 101);
     // What has a header that no curve has is no list of points either.
