@@ -10,8 +10,11 @@ use crate::HankelPlan;
 
 /// Standard deviations from its centre beyond which a Gaussian counts as 0: 1.1e-19 of it is there.
 const REACH: f64 = 9.0;
-/// Oscillations of a Bessel function over the band up to which it is integrated by quadrature.
+/// Oscillations of a Bessel function over the slopes of P up to which it is integrated by quadrature.
 const MOST_TURNS: f64 = 1e4;
+/// A Gaussian narrower than this part of ν₀ + width counts as none: it changes g by less than its
+/// square.
+const SHARP: f64 = 1e-8;
 /// The thesis's parameters belong to this many points …
 const REFERENCE_POINTS: f64 = 4096.0;
 
@@ -89,38 +92,59 @@ impl SinglePeak {
         ((self.nu0 - reach).max(0.0), self.nu0 + self.width + reach)
     }
 
-    /// Bounds of annuli fine enough for P to count as constant on each: jumps, and 16 to σ.
-    pub(super) fn bounds(self) -> Vec<f64> {
-        let (from, to) = self.band();
-        if self.sigma > 0.0 {
-            let mut bounds = steps_between(from, to, self.sigma / 16.0);
-            if from > 0.0 {
-                bounds.insert(0, 0.0);
-            }
-            bounds
-        } else {
-            vec![0.0, self.nu0, self.nu0 + self.width]
-        }
+    /// Whether the Gaussian is so narrow that it doesn't matter to g.
+    fn is_sharp(self) -> bool {
+        self.sigma <= SHARP * (self.nu0 + self.width)
     }
 
-    /// g(r) at density `n`, to about 1e-12: a disk for P = 0, quadrature over the band.
-    pub(super) fn rdf(self, n: f64, r: &[f64]) -> Vec<f64> {
+    /// Where P isn't constant: around both ends of the box, or one band if these meet.
+    fn slopes(self) -> Vec<(f64, f64)> {
         let (from, to) = self.band();
-        if self.sigma == 0.0 {
-            let excess = [-1.0, self.peak / self.width];
-            return Annuli::new(&[0.0, self.nu0, self.nu0 + self.width], &excess).rdf(n, r);
+        let reach = REACH * self.sigma;
+        let (below, above) = (self.nu0 + reach, self.nu0 + self.width - reach);
+        if below < above { vec![(from, below), (above, to)] } else { vec![(from, to)] }
+    }
+
+    /// Bounds of annuli fine enough for P to count as constant on each: jumps, and 16 to σ.
+    pub(super) fn bounds(self) -> Vec<f64> {
+        let mut bounds = vec![0.0];
+        if self.is_sharp() {
+            bounds.extend([self.nu0, self.nu0 + self.width]);
+        } else {
+            for (from, to) in self.slopes() {
+                bounds.extend(steps_between(from, to, self.sigma / 16.0));
+            }
         }
-        if (to - from) * r.iter().copied().fold(0.0, f64::max) > MOST_TURNS {
+        bounds.dedup();
+        bounds
+    }
+
+    /// g(r) at density `n`, to about 1e-12: annuli where P is constant, quadrature in between.
+    pub(super) fn rdf(self, n: f64, r: &[f64]) -> Vec<f64> {
+        let top = self.peak / self.width;
+        if self.is_sharp() {
+            return Annuli::new(&[0.0, self.nu0, self.nu0 + self.width], &[-1.0, top]).rdf(n, r);
+        }
+        let slopes = self.slopes();
+        let length: f64 = slopes.iter().map(|(from, to)| to - from).sum();
+        if length * r.iter().copied().fold(0.0, f64::max) > MOST_TURNS {
             let bounds = self.bounds();
             let middle = |pair: &[f64]| self.power(0.5 * (pair[0] + pair[1])) - 1.0;
             let excess: Vec<f64> = bounds.windows(2).map(middle).collect();
             return Annuli::new(&bounds, &excess).rdf(n, r);
         }
-        let mut g = Annuli::new(&[0.0, from], &[-1.0]).rdf(n, r);
-        // The Gaussian is as smooth as 16 Gauss nodes can be asked for over 2σ.
-        let plan = HankelPlan::alike(&[from, to], PI / 2.0 * self.sigma, r);
-        for (g, band) in g.iter_mut().zip(plan.transform(|nu| self.power(nu) - 1.0)) {
-            *g += band / n;
+        let mut g = match slopes[..] {
+            [(from, below), (above, _)] => {
+                Annuli::new(&[0.0, from, below, above], &[-1.0, 0.0, top]).rdf(n, r)
+            }
+            _ => Annuli::new(&[0.0, slopes[0].0], &[-1.0]).rdf(n, r),
+        };
+        for (from, to) in slopes {
+            // The Gaussian is as smooth as 16 Gauss nodes can be asked for over 2σ.
+            let plan = HankelPlan::alike(&[from, to], PI / 2.0 * self.sigma, r);
+            for (g, band) in g.iter_mut().zip(plan.transform(|nu| self.power(nu) - 1.0)) {
+                *g += band / n;
+            }
         }
         g
     }

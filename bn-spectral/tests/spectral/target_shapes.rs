@@ -1,7 +1,7 @@
 //! Targets: each way to the RDF against another one, and what is refused.
 
 use bn_core::{Density, PointSet, Seed};
-use bn_spectral::{SinglePeak, Target, TargetError, highest_step, step_rdf};
+use bn_spectral::{HankelPlan, Realizability, SinglePeak, Target, TargetError, highest_step, step_rdf};
 use rand::RngExt as _;
 
 const N: usize = 1024;
@@ -45,6 +45,30 @@ fn smooth_peaks_tend_to_the_sharp_one() {
     let (sharp, narrow, wide) = (peak(0.0), peak(0.05), peak(0.1));
     let (one, four) = (largest_difference(&sharp, &narrow), largest_difference(&sharp, &wide));
     assert!(one < 0.02 && (3.5..4.5).contains(&(four / one)), "{one} {four}");
+}
+
+/// However narrow the Gaussian, with the two slopes apart: the error goes like σ², and nothing takes
+/// more nodes as it gets narrower.
+#[test]
+fn narrow_slopes_are_told_from_sharp_ones_while_they_differ() {
+    let peak = |sigma| {
+        let peak = SinglePeak { nu0: 20.0, peak: 3.0, sigma, width: 2.0 };
+        Target::single_peak(density(), peak).expect("valid")
+    };
+    let sharp = peak(0.0).rdf(&radii());
+    let difference = |sigma: f64| largest_difference(&sharp, &peak(sigma).rdf(&radii()));
+    let ratio = difference(2e-3) / difference(1e-3);
+    assert!((3.9..4.1).contains(&ratio), "{ratio}");
+    // By (2π/n)·(σ²/2)·height·|d(ν J₀)/dν| at each edge.
+    let most = |sigma: f64| 1e-12 + 0.2 * sigma * sigma;
+    for exponent in 3..=13 {
+        let sigma = 10.0_f64.powi(-exponent);
+        assert!(difference(sigma) < most(sigma), "{sigma}: {}", difference(sigma));
+        let verdict = Realizability::of(&peak(sigma));
+        assert_eq!(verdict.realizable, Realizability::of(&peak(0.0)).realizable, "{sigma}");
+    }
+    let far = SinglePeak { nu0: 1e9, peak: 3.0, sigma: 1e-300, width: 1e-9 };
+    assert!(!Realizability::of(&Target::single_peak(density(), far).expect("valid")).realizable);
 }
 
 #[test]
