@@ -189,6 +189,7 @@ fn least_g(target: &Target) -> (f64, f64, f64) {
         let far = |i: u32| reached + (range - reached) * f64::from(i) / f64::from(FAR_RADII);
         radii.extend((1..=FAR_RADII).map(far));
     }
+    radii.extend(target.rdf_abscissae());
     let margins = |radii: &[f64]| -> (f64, f64, f64) {
         let (g, error) = (target.rdf(radii), target.rdf_uncertainty(radii));
         let all = radii.iter().zip(&g).zip(&error).map(|((&r, &g), &error)| (g, r, error));
@@ -267,8 +268,12 @@ fn number_variance(target: &Target) -> Option<Warning> {
 /// Break points for a quadrature of P: where it may jump, unless it is tabulated more finely than
 /// the quadrature needs.
 fn bounded(target: &Target, end: f64) -> Vec<f64> {
-    let bounds: Vec<f64> = target.annuli().into_iter().filter(|&b| b > 0.0 && b < end).collect();
-    let breaks = if bounds.len() <= 4096 { bounds } else { Vec::new() };
+    let mut breaks: Vec<f64> =
+        target.breaks().into_iter().filter(|&b| b > 0.0 && b < end).collect();
+    breaks.dedup();
+    if breaks.len() > 4096 {
+        breaks.clear();
+    }
     std::iter::once(0.0).chain(breaks).chain([end]).collect()
 }
 

@@ -1,4 +1,4 @@
-//! Functions that are constant on annuli, and their transforms in closed form.
+//! Functions that are constant on annuli, or linear, and their transforms in closed form.
 
 use std::f64::consts::TAU;
 
@@ -8,6 +8,10 @@ use crate::bessel::jinc_slice_alike;
 
 /// Radii whose transforms are computed together.
 const CHUNK: usize = 256;
+/// How exact the transform of a ramp is to be.
+const RAMP: f64 = 1e-6;
+/// The most annuli that are made of all ramps, beyond one of each.
+const MOST_PIECES: f64 = 131_072.0;
 
 /// f = vₖ on the annulus [bₖ, bₖ₊₁), 0 elsewhere, as a sum of disks.
 pub(super) struct Annuli {
@@ -50,6 +54,51 @@ impl Annuli {
             *g = 1.0 + *g / n;
         }
         g
+    }
+}
+
+/// A function that is linear between its samples and 0 beyond the last, as narrow annuli.
+pub(super) struct Ramps {
+    /// Of the annuli, ascending from 0.
+    pub(super) bounds: Vec<f64>,
+    means: Vec<f64>,
+}
+
+impl Ramps {
+    /// The function with samples (`x`, `f`), its first value down to 0, in annuli so narrow that none
+    /// of its ramps changes the transform by more than about `RAMP`, with frequencies and distances
+    /// in units of `unit` and its reciprocal; in 2¹⁷ annuli more than samples at most.
+    pub(super) fn new(x: &[f64], f: &[f64], unit: f64) -> Self {
+        // Annuli of width h take (2π/12)·(slope·h²)·[x J₀] off the transform of a ramp, |J₀| ≤ 1.
+        let pieces = |i: usize| {
+            let (length, end) = ((x[i + 1] - x[i]) / unit, x[i + 1] / unit);
+            let wanted = (0.5 * (f[i + 1] - f[i]).abs() * length * end / RAMP).sqrt();
+            if wanted > 1.0 { wanted.min(MOST_PIECES) } else { 1.0 }
+        };
+        let wanted: f64 = (0..x.len() - 1).map(|i| pieces(i) - 1.0).sum();
+        let share = (MOST_PIECES / wanted).min(1.0);
+        let (mut bounds, mut means) = (vec![0.0], Vec::new());
+        if x[0] > 0.0 {
+            (bounds, means) = (vec![0.0, x[0]], vec![f[0]]);
+        }
+        for i in 0..x.len() - 1 {
+            let count = (1.0 + share * (pieces(i) - 1.0)).ceil() as u32;
+            let at = |part: f64| x[i] + (x[i + 1] - x[i]) * (part / f64::from(count));
+            for piece in 0..count {
+                let (from, to) = (at(f64::from(piece)), at(f64::from(piece + 1)));
+                // The mean over the annulus is the value at its centroid.
+                let width = to - from;
+                let centroid = 0.5 * (from + to) + width / 6.0 * (width / (from + to));
+                let t = (centroid - x[i]) / (x[i + 1] - x[i]);
+                bounds.push(to);
+                means.push(f[i] * (1.0 - t) + f[i + 1] * t);
+            }
+        }
+        Self { bounds, means }
+    }
+
+    pub(super) fn annuli(&self) -> Annuli {
+        Annuli::new(&self.bounds, &self.means)
     }
 }
 

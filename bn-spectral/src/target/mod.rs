@@ -71,9 +71,9 @@ pub enum TargetError {
 ///
 /// g(r) = 1 + (2π/n) ∫ ν (P(ν) − 1) J₀(2πνr) dν,  P(ν) = 1 + 2πn ∫ r (g(r) − 1) J₀(2πνr) dr.
 ///
-/// Closed forms are used where they exist: the step; annuli for sampled curves, whose samples stand
-/// for the halves of their neighbourhood each (exact for such a curve, O(Δ²) for a smooth one that
-/// it samples); Gauss quadrature over the band where a smoothed peak differs from 0 and 1.
+/// Closed forms are used where they exist: the step; annuli for sampled curves, so narrow that the
+/// transform of each of their linear pieces is good to about 1e-6; Gauss quadrature where a smoothed
+/// peak differs from a constant.
 ///
 /// The values decide where matched points lie: they have the same bits on every CPU.
 ///
@@ -240,6 +240,11 @@ impl Target {
         }
     }
 
+    /// The abscissae of a curve of g, none of other targets.
+    pub(crate) fn rdf_abscissae(&self) -> &[f64] {
+        if let Shape::Rdf(samples) = &self.shape { samples.abscissae() } else { &[] }
+    }
+
     /// Five standard deviations of the statistical error that g has because P was measured, at `r`.
     pub(crate) fn rdf_uncertainty(&self, r: &[f64]) -> Vec<f64> {
         match &self.shape {
@@ -248,9 +253,14 @@ impl Target {
         }
     }
 
-    /// Bounds of annuli over which P varies little; jumps lie on bounds.
+    /// Bounds of annuli over which P varies little; jumps and kinks lie on bounds.
     pub(crate) fn annuli(&self) -> Vec<f64> {
         self.shape.bounds(self.density.points_per_unit_area())
+    }
+
+    /// Where P may have a jump or a kink, ascending, and as near to each other as it varies fast.
+    pub(crate) fn breaks(&self) -> Vec<f64> {
+        self.shape.breaks(self.density.points_per_unit_area())
     }
 }
 
@@ -304,15 +314,25 @@ impl Shape {
         }
     }
 
-    /// Bounds of annuli over which P varies little; jumps lie on bounds.
+    /// See [`Target::annuli`].
     fn bounds(&self, n: f64) -> Vec<f64> {
         match self {
             Self::Step(nu0) => vec![0.0, *nu0],
             Self::Peak(peak) => peak.bounds(),
-            Self::Power(samples) => samples.bounds(),
+            Self::Power(samples) => samples.bounds(n),
             Self::Rdf(samples) => steps_between(0.0, samples.end(), n.sqrt() / 64.0),
             Self::Sum(parts) => merged(parts.iter().map(|(_, part)| part.bounds(n))),
             Self::Product(parts) => merged(parts.iter().map(|part| part.bounds(n))),
+        }
+    }
+
+    /// See [`Target::breaks`].
+    fn breaks(&self, n: f64) -> Vec<f64> {
+        match self {
+            Self::Power(samples) => samples.breaks(),
+            Self::Sum(parts) => merged(parts.iter().map(|(_, part)| part.breaks(n))),
+            Self::Product(parts) => merged(parts.iter().map(|part| part.breaks(n))),
+            Self::Step(_) | Self::Peak(_) | Self::Rdf(_) => self.bounds(n),
         }
     }
 }

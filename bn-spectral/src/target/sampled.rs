@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use bn_core::Density;
 use rayon::prelude::*;
 
-use super::annuli::{Annuli, cells, steps_between};
+use super::annuli::{Annuli, Ramps, cells, steps_between};
 use crate::bessel::j0_slice_alike;
 
 /// A curve counts as settled at 1 if its last tenth is this close to it.
@@ -41,8 +41,20 @@ impl PowerSamples {
         self.nu[self.nu.len() - 1]
     }
 
-    pub(super) fn bounds(&self) -> Vec<f64> {
-        cells(&self.nu)
+    /// Bounds of annuli over which P varies little at density `n`; abscissae are among them.
+    pub(super) fn bounds(&self, n: f64) -> Vec<f64> {
+        if self.is_measured() { cells(&self.nu) } else { self.ramps(n).bounds }
+    }
+
+    /// Where P may have a jump or a kink.
+    pub(super) fn breaks(&self) -> Vec<f64> {
+        if self.is_measured() { cells(&self.nu) } else { self.nu.clone() }
+    }
+
+    /// P − 1 of a curve that wasn't measured.
+    fn ramps(&self, n: f64) -> Ramps {
+        let excess: Vec<f64> = self.power.iter().map(|p| p - 1.0).collect();
+        Ramps::new(&self.nu, &excess, n.sqrt())
     }
 
     /// Linear between the samples; of measured rings the mean of the ring at hand, so that means over
@@ -71,13 +83,16 @@ impl PowerSamples {
     /// a Gaussian: what lies beyond is unknown and not 1. g is then smoothed by a Gaussian too, which
     /// can't make it negative where it wasn't.
     pub(super) fn rdf(&self, n: f64, r: &[f64]) -> Vec<f64> {
+        if !self.is_measured() {
+            return self.ramps(n).annuli().rdf(n, r);
+        }
         let excess: Vec<f64> =
             self.nu.iter().zip(&self.power).map(|(nu, p)| (p - 1.0) * self.taper(*nu)).collect();
-        Annuli::new(&self.bounds(), &excess).rdf(n, r)
+        Annuli::new(&cells(&self.nu), &excess).rdf(n, r)
     }
 
     fn taper(&self, nu: f64) -> f64 {
-        if !self.is_measured() || unsettled(&self.power).is_none() {
+        if unsettled(&self.power).is_none() {
             1.0
         } else {
             libm::exp(-0.5 * (nu / (TAPER * self.end())).powi(2))
@@ -113,11 +128,8 @@ impl RdfSamples {
         let n = density.points_per_unit_area();
         let (r, g): (Vec<f64>, Vec<f64>) = samples.iter().copied().unzip();
         let excess: Vec<f64> = g.iter().map(|g| g - 1.0).collect();
-        // No detail of g reaches beyond half its samples' rate.
-        let finest = r.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-        let highest = (HIGHEST * n.sqrt()).min(0.5 / finest);
-        let nu = steps_between(0.0, highest, n.sqrt() / STEPS);
-        let mut power = Annuli::new(&cells(&r), &excess).transform(&nu);
+        let nu = steps_between(0.0, HIGHEST * n.sqrt(), n.sqrt() / STEPS);
+        let mut power = Ramps::new(&r, &excess, 1.0 / n.sqrt()).annuli().transform(&nu);
         for power in &mut power {
             *power = 1.0 + n * *power;
         }
@@ -127,6 +139,11 @@ impl RdfSamples {
     /// By how much the last tenth of the samples is away from 1 where it should have settled.
     pub(super) fn unsettled(&self) -> Option<f64> {
         unsettled(&self.g)
+    }
+
+    /// The radii.
+    pub(super) fn abscissae(&self) -> &[f64] {
+        &self.r
     }
 
     /// The last radius.

@@ -250,3 +250,45 @@ fn curves_that_end_early_are_judged_as_they_are() {
     let settled = Realizability::of(&Target::power_curve(density(), &settled).expect("valid"));
     assert!(settled.is_unobjectionable() && settled.warnings.is_empty(), "{settled:?}");
 }
+
+/// Curves of two samples are ramps, of known integrals: a staircase in their place has the other verdict.
+#[test]
+fn coarse_curves_are_lines() {
+    let n = N as f64;
+    // P = ν/ν₁ up to ν₁: g(0) = 1 + (2π/n)·ν₁²·(1/3 − 1/2).
+    for (square, want) in [(0.94, true), (0.97, false), (1.0, false)] {
+        let end = (square * n).sqrt();
+        let target = Target::power_curve(density(), &[(0.0, 0.0), (end, 1.0)]).expect("valid");
+        let verdict = Realizability::of(&target);
+        let g = 1.0 - std::f64::consts::PI / 3.0 * square;
+        assert!((verdict.min_g - g).abs() < 1e-9 && verdict.at_r == 0.0, "{verdict:?}");
+        assert_eq!(verdict.realizable, want, "{verdict:?}");
+    }
+    // The same of g, where P(0) = 1 + 2πn·r₁²·(1/3 − 1/2).
+    for (square, want) in [(0.94, true), (0.97, false), (1.1547, false)] {
+        let end = (square / n).sqrt();
+        let target = Target::rdf_curve(density(), &[(0.0, 0.0), (end, 1.0)]).expect("valid");
+        let verdict = Realizability::of(&target);
+        let power = 1.0 - std::f64::consts::PI / 3.0 * square;
+        assert!((verdict.min_power - power).abs() < 1e-9 && verdict.at_nu == 0.0, "{verdict:?}");
+        assert_eq!(verdict.realizable, want, "{verdict:?}");
+    }
+}
+
+/// Abscissae that differ in their last bits, whose halfway marks do not.
+#[test]
+fn neighbouring_numbers_are_no_obstacle() {
+    let ulp = f64::EPSILON;
+    let x = [0.0, 1.0, 1.0 + ulp, 1.0 + 2.0 * ulp, 1.0 + 3.0 * ulp, 2.0];
+    let samples: Vec<_> = x.into_iter().zip([0.0, 0.0, 0.0, 0.0, 1.0, 1.0]).collect();
+    let verdict = Realizability::of(&Target::power_curve(density(), &samples).expect("valid"));
+    let step = Target::step(density(), 1.0).expect("valid");
+    assert!((verdict.min_g - step.rdf(&[0.0])[0]).abs() < 1e-12, "{verdict:?}");
+    assert!(
+        Realizability::of(&Target::rdf_curve(density(), &samples).expect("valid")).min_g == 0.0
+    );
+    let tiny = [(0.0, 1e300), (5e-324, -1e300), (1e-323, 1.0), (1e300, 1.0)];
+    for target in [Target::power_curve, Target::rdf_curve].map(|of| of(density(), &tiny)) {
+        assert!(!Realizability::of(&target.expect("valid")).realizable);
+    }
+}

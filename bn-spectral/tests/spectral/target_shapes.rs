@@ -1,7 +1,9 @@
 //! Targets: each way to the RDF against another one, and what is refused.
 
 use bn_core::{Density, PointSet, Seed};
-use bn_spectral::{HankelPlan, Realizability, SinglePeak, Target, TargetError, highest_step, step_rdf};
+use bn_spectral::{
+    HankelPlan, Realizability, SinglePeak, Target, TargetError, highest_step, step_rdf,
+};
 use rand::RngExt as _;
 
 const N: usize = 1024;
@@ -84,6 +86,39 @@ fn samples_of_a_smooth_spectrum_give_its_rdf() {
     // The midpoint rule: second order.
     let (coarse, fine) = (error(0.5), error(0.25));
     assert!(fine < 0.02 && (3.0..5.0).contains(&(coarse / fine)), "{coarse} {fine}");
+}
+
+/// The transform of lines between few samples against Gauss quadrature of them, both ways.
+#[test]
+fn curves_are_lines_between_their_samples() {
+    let mut rng = Seed::new(21).stream(0);
+    let root = (N as f64).sqrt();
+    for samples in [2, 3, 5, 40] {
+        let mut x: Vec<f64> = (0..samples).map(|_| 3.0 * rng.random::<f64>()).collect();
+        x.sort_by(f64::total_cmp);
+        let y: Vec<f64> = x.iter().map(|_| 2.0 * rng.random::<f64>()).collect();
+        let curve = |unit: f64| -> Vec<(f64, f64)> {
+            x.iter().zip(&y).map(|(x, y)| (x * unit, *y)).collect()
+        };
+        let oracle = |target: &dyn Fn(f64) -> f64, unit: f64, at: &[f64]| {
+            let breaks: Vec<f64> = [0.0].iter().chain(&x).map(|x| x * unit).collect();
+            HankelPlan::new(&breaks, unit, at).transform(|x| target(x) - 1.0)
+        };
+        let power = Target::power_curve(density(), &curve(root)).expect("valid");
+        let want = oracle(&|nu| power.power(nu), root, &radii());
+        let want: Vec<f64> = want.iter().map(|g| 1.0 + g / N as f64).collect();
+        let error = largest_difference(&power.rdf(&radii()), &want);
+        assert!(error < 1e-5, "{samples}: {error}");
+
+        let rdf = Target::rdf_curve(density(), &curve(1.0 / root)).expect("valid");
+        // At its table's own frequencies: what lies between is another matter.
+        let nu: Vec<f64> = (0..1000).map(|i| f64::from(i) * root / 64.0).collect();
+        let want = oracle(&|r| rdf.rdf(&[r])[0], 1.0 / root, &nu);
+        let want: Vec<f64> = want.iter().map(|p| 1.0 + p * N as f64).collect();
+        let got: Vec<f64> = nu.iter().map(|nu| rdf.power(*nu)).collect();
+        let error = largest_difference(&got, &want);
+        assert!(error < 1e-5, "{samples}: {error}");
+    }
 }
 
 /// P → g → P: what is left is the blur of the samples.
