@@ -34,6 +34,8 @@ pub(super) struct Lbfgs {
     direction: Vec<DVec2>,
     trial: Trial,
     evaluations: u32,
+    /// The most evaluations.
+    limit: u32,
 }
 
 /// s = x′ − x, y = ∇f′ − ∇f, ρ = 1/(s·y).
@@ -61,13 +63,14 @@ struct Sample {
 }
 
 impl Lbfgs {
-    /// A minimisation from `x` on; one evaluation.
-    pub(super) fn new(x: Vec<DVec2>, objective: &mut impl Objective) -> Self {
+    /// A minimisation from `x` on, of at most `limit` evaluations; the first is due at once.
+    pub(super) fn new(x: Vec<DVec2>, objective: &mut impl Objective, limit: u32) -> Self {
         let mut gradient = vec![DVec2::ZERO; x.len()];
         let value = objective.evaluate(&x, &mut gradient);
         let zeros = || vec![DVec2::ZERO; x.len()];
         let (direction, trial) = (zeros(), Trial { x: zeros(), gradient: zeros() });
-        Self { gradient, value, pairs: VecDeque::new(), direction, trial, evaluations: 1, x }
+        let pairs = VecDeque::new();
+        Self { gradient, value, pairs, direction, trial, evaluations: 1, limit, x }
     }
 
     /// The value at the present place.
@@ -92,7 +95,7 @@ impl Lbfgs {
 
     /// One line search. `first_move` is how far the fastest point moves at the first trial where
     /// nothing is known of the Hessian. False where no lower value was found: a minimum, or as near
-    /// as rounding allows.
+    /// as rounding allows, or as the evaluations that are left.
     pub(super) fn step(&mut self, objective: &mut impl Objective, first_move: f64) -> bool {
         if self.search(objective, first_move) {
             return true;
@@ -183,8 +186,13 @@ impl Lbfgs {
         let decreases = |s: &Sample| s.value <= start.value + ARMIJO * s.length * start.slope;
         let flat = |s: &Sample| s.slope.abs() <= -CURVATURE * start.slope;
         let (mut low, mut high): (Sample, Option<Sample>) = (start, None);
-        let mut length = first;
+        let (mut length, mut tried) = (first, 0.0);
         for _ in 0..TRIALS {
+            // One is kept for the way back to the lowest place.
+            if self.evaluations + u32::from(low.length > 0.0) >= self.limit {
+                break;
+            }
+            tried = length;
             let here = self.evaluate_at(objective, length);
             if !decreases(&here) || (low.length > 0.0 && here.value >= low.value) {
                 high = Some(here);
@@ -204,7 +212,10 @@ impl Lbfgs {
             };
         }
         // Out of trials: the lowest place will do, if the trial can be put back there.
-        (low.length > 0.0).then(|| self.evaluate_at(objective, low.length))
+        if low.length > 0.0 && low.length != tried {
+            low = self.evaluate_at(objective, low.length);
+        }
+        (low.length > 0.0).then_some(low)
     }
 }
 
@@ -267,7 +278,7 @@ mod tests {
     fn reaches_the_minimum_and_never_climbs() {
         let start: Vec<DVec2> =
             (0..7).map(|i| DVec2::new(-1.2 + 0.1 * f64::from(i), 1.0)).collect();
-        let mut search = Lbfgs::new(start, &mut Valleys);
+        let mut search = Lbfgs::new(start, &mut Valleys, u32::MAX);
         let mut before = search.value();
         while search.value() > 1e-16 && search.evaluations() < 1000 {
             assert!(search.step(&mut Valleys, 0.1), "stuck at {}", search.value());
@@ -295,7 +306,25 @@ mod tests {
             }
         }
         let start = vec![DVec2::new(0.5, 0.5); 3];
-        assert!(!Lbfgs::new(start.clone(), &mut Flat).step(&mut Flat, 0.1));
-        assert!(!Lbfgs::new(start, &mut Undefined).step(&mut Undefined, 0.1));
+        assert!(!Lbfgs::new(start.clone(), &mut Flat, 100).step(&mut Flat, 0.1));
+        assert!(!Lbfgs::new(start, &mut Undefined, 100).step(&mut Undefined, 0.1));
+    }
+
+    /// Wherever a line search is cut short, the state is that of the lowest place seen.
+    #[test]
+    fn no_more_evaluations_than_the_limit() {
+        let start: Vec<DVec2> =
+            (0..7).map(|i| DVec2::new(-1.2 + 0.1 * f64::from(i), 1.0)).collect();
+        let mut values = Vec::new();
+        for limit in 1..120 {
+            let mut search = Lbfgs::new(start.clone(), &mut Valleys, limit);
+            while search.step(&mut Valleys, 0.1) {}
+            assert_eq!(search.evaluations(), limit);
+            let mut gradient = vec![DVec2::ZERO; start.len()];
+            assert_eq!(Valleys.evaluate(search.x(), &mut gradient), search.value());
+            assert_eq!(search.gradient, gradient);
+            values.push(search.value());
+        }
+        assert!(values[118] < 0.1 * values[0], "{values:?}");
     }
 }

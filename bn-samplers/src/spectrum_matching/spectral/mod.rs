@@ -59,7 +59,7 @@ pub struct Spectral {
     /// The most evaluations of each stage. None: 150, and 1000 for a spectrum that was measured, which is
     /// known to be one of point sets, perhaps well ordered ones that are found slowly.
     pub evaluations: Option<u32>,
-    /// The most evaluations of all stages, those of the first stages counted in full.
+    /// The most evaluations of all stages together; each but the last may take half of what is left.
     pub iterations: Option<u32>,
     /// Stop at this residual: the root mean square of ring means less the target over all modes up
     /// to the last range. None: at a cost, the mean square weighted by `weights`, of 1e-6. Earlier
@@ -120,25 +120,28 @@ impl Spectral {
         let root = (n as f64).sqrt();
         let mut x: Vec<DVec2> = start.points().iter().map(|p| *p * root).collect();
         let (mut iterations, mut before, mut end) = (0, 0, End::Evaluations);
-        let each = if target.is_measured() { MEASURED_EVALUATIONS } else { EVALUATIONS };
-        let each = self.evaluations.unwrap_or(each);
+        let usual = if target.is_measured() { MEASURED_EVALUATIONS } else { EVALUATIONS };
         let mut left = self.iterations.unwrap_or(u32::MAX);
         for (number, &range) in self.ranges.iter().enumerate() {
             let last = number + 1 == self.ranges.len();
             let goal =
                 if last { Goal::of(self.tolerance) } else { Goal::of(self.tolerance).coarse() };
+            let share = if last { left } else { left / 2 };
+            let most = share.min(self.evaluations.unwrap_or(u32::MAX));
+            if most == 0 {
+                continue;
+            }
+            let pays = if last || verdict.realizable { u32::MAX } else { UNATTAINABLE };
+            let usual = self.evaluations.unwrap_or(usual).min(pays);
             let rings = Rings::new(target, max_frequency(range, n), weights);
-            let most = if last || verdict.realizable { u32::MAX } else { UNATTAINABLE };
-            let share = each.min(left);
-            left -= share;
-            let budget = share.min(most);
-            let search = Search { budget, goal, observer, number, before };
+            let search = Search { usual, most, goal, observer, number, before };
             let found = if goal.is_fine() {
                 search.run(&mut plan(Match::<f64>::new(rings, n, FINE_TOLERANCE))?, x)?
             } else {
                 search.run(&mut plan(Match::<f32>::new(rings, n, TOLERANCE))?, x)?
             };
             x = found.x;
+            left -= found.evaluations;
             iterations += found.evaluations;
             before += found.searches;
             end = found.end;
@@ -188,7 +191,10 @@ impl Goal {
 
 /// One stage's search.
 struct Search<'a> {
-    budget: u32,
+    /// Evaluations after which it ends with the line search at hand.
+    usual: u32,
+    /// The most evaluations.
+    most: u32,
     goal: Goal,
     observer: &'a dyn Observer,
     number: usize,
@@ -206,7 +212,8 @@ struct Found {
 
 impl Search<'_> {
     fn run<T: Real>(&self, cost: &mut Match<T>, x: Vec<DVec2>) -> Result<Found, SampleError> {
-        let mut search = Lbfgs::new(x, cost);
+        let mut search = Lbfgs::new(x, cost, self.most);
+        let budget = self.usual.min(self.most);
         let mut history = vec![search.value()];
         let places = |x: &[DVec2]| {
             let root = (x.len() as f64).sqrt();
@@ -216,20 +223,21 @@ impl Search<'_> {
         let end = loop {
             let (value, rms) = (search.value(), cost.residual().rms);
             let figures = [("cost", value), ("rms", rms)];
-            let done = u64::from(search.evaluations().min(self.budget));
-            let progress = Progress::new(stage, done, Some(self.budget.into()));
+            let done = u64::from(search.evaluations().min(budget));
+            let progress = Progress::new(stage, done, Some(budget.into()));
             observe(self.observer, &progress.with_figures(&figures))?;
             let iteration = self.before + (history.len() - 1) as u64;
             self.observer.iterated(iteration, &|| places(search.x()));
             let earlier = history.len().checked_sub(PATIENCE + 1).map(|i| history[i]);
             if self.goal.is_met(value, rms) {
                 break End::Tolerance;
-            } else if search.evaluations() >= self.budget {
+            } else if search.evaluations() >= budget {
                 break End::Evaluations;
             } else if earlier.is_some_and(|earlier| value > (1.0 - LEAST_GAIN) * earlier) {
                 break End::Stalled;
             } else if !search.step(cost, FIRST_MOVE) {
-                break End::Gradient;
+                let spent = search.evaluations() >= self.most;
+                break if spent { End::Evaluations } else { End::Gradient };
             }
             history.push(search.value());
         };
