@@ -10,7 +10,7 @@ pub(crate) mod step;
 mod table_forces;
 
 use bn_core::{DVec2, Observer, PointSet, Seed};
-use bn_spectral::Target;
+use bn_spectral::{Real, Target};
 
 use crate::error::check_count;
 use crate::{
@@ -157,14 +157,23 @@ impl SpectrumMatching {
         Self { target, algorithm, start: None }
     }
 
-    /// How far `set` is from the target over frequencies up to 6√n.
+    /// How far `set` is from the target over frequencies up to 6√n; in double precision where single
+    /// can't tell.
     ///
     /// # Errors
     /// If the set is so large that its spectrum can't be had.
     pub fn residual(&self, set: &PointSet) -> Result<Residual, SampleError> {
+        let coarse = self.residual_to::<f32>(set, spectral::TOLERANCE)?;
+        if coarse.rms >= spectral::FINE_RESIDUAL {
+            return Ok(coarse);
+        }
+        self.residual_to::<f64>(set, spectral::FINE_TOLERANCE)
+    }
+
+    fn residual_to<T: Real>(&self, set: &PointSet, tolerance: f64) -> Result<Residual, SampleError> {
         let limit = spectral::max_frequency(MEASURED, set.len());
         let rings = Rings::new(&self.target, limit, Weights::default());
-        let mut measure = spectral::plan(Match::<f32>::new(rings, set.len(), spectral::TOLERANCE))?;
+        let mut measure = spectral::plan(Match::<T>::new(rings, set.len(), tolerance))?;
         Ok(measure.residual_of(set.points()))
     }
 }

@@ -214,13 +214,15 @@ fn searches_end_as_they_are_told_to() {
     };
     ended(&run(&step(n), Algorithm::default()), "tolerance", true);
     let mut before = 0;
-    for tolerance in ["1e-1", "1e-2", "1e-3"] {
+    for tolerance in ["1e-1", "1e-2", "1e-3", "1e-6"] {
         let sample = run(&step(n), Algorithm::Spectral(spectral(&[("tolerance", tolerance)])));
         ended(&sample, "tolerance", true);
         let bound: f64 = tolerance.parse().expect("a number");
         assert!(figure(&sample, "residual") <= 1.01 * bound, "{tolerance}: {:?}", sample.report);
         assert!(iterations(&sample) > before, "{tolerance}");
         before = iterations(&sample);
+        // The empty modes are one in (6²·π) = 113 of all.
+        assert!(figure(&sample, "empty_power") < 11.0 * bound, "{:?}", sample.report);
     }
     let few = run(&step(n), Algorithm::Spectral(spectral(&[("evaluations", "5")])));
     ended(&few, "evaluations", false);

@@ -20,9 +20,9 @@ pub use rings::{Residual, Weights};
 /// Relative error of the Fourier sums: a power of 1e-8 is still told from 0.
 pub(super) const TOLERANCE: f64 = 1e-4;
 /// The same in double precision, for residuals that single precision can't resolve …
-const FINE_TOLERANCE: f64 = 1e-7;
+pub(super) const FINE_TOLERANCE: f64 = 1e-7;
 /// … below this.
-const FINE_RESIDUAL: f64 = 1e-4;
+pub(super) const FINE_RESIDUAL: f64 = 1e-4;
 /// The range of frequencies, in √n, that shapes a pattern.
 const COARSE_RANGE: f64 = 1.5;
 /// Evaluations of a stage …
