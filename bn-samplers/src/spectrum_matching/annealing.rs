@@ -6,6 +6,7 @@ use rand::RngExt as _;
 
 use super::{End, Outcome};
 use crate::SampleError;
+use crate::common_options::check_range;
 use crate::error::observe;
 
 /// Spectrum matching by simulated annealing: M. D. Rintoul and S. Torquato, "Reconstruction of the
@@ -18,11 +19,11 @@ use crate::error::observe;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Annealing {
-    /// Bins to a unit of 1/√n, over [0, ½).
+    /// Bins to a unit of 1/√n, over [0, ½); 1000 at most.
     pub resolution: f64,
     /// T of the first sweep, in units of the energy's noise of one bin.
     pub temperature: f64,
-    /// The factor of T after each sweep.
+    /// The factor of T after each sweep, 1 at most.
     pub cooling: f64,
     /// The most sweeps.
     pub iterations: u32,
@@ -38,6 +39,13 @@ impl Default for Annealing {
 const TASK: u32 = u32::MAX;
 
 impl Annealing {
+    /// Fields are public.
+    fn check(&self) -> Result<(), SampleError> {
+        check_range("resolution", self.resolution, 0.0, 1000.0)?;
+        check_range("temperature", self.temperature, 0.0, 1e9)?;
+        check_range("cooling", self.cooling, 0.0, 1.0)
+    }
+
     pub(super) fn run(
         &self,
         target: &Target,
@@ -45,6 +53,7 @@ impl Annealing {
         seed: Seed,
         observer: &dyn Observer,
     ) -> Result<Outcome, SampleError> {
+        self.check()?;
         let n = start.len();
         let root = (n as f64).sqrt();
         let bins = ((0.5 * self.resolution * root) as usize).clamp(2, 1 << 20);

@@ -7,6 +7,7 @@ use super::force::moved;
 use super::table_forces::{MOST_STRENGTHS, table_forces};
 use super::{End, Outcome};
 use crate::SampleError;
+use crate::common_options::check_range;
 use crate::error::observe;
 
 /// Spectrum matching by gradient descent on ‖g − gₜ‖²: Y. Zhou, H. Huang, L.-Y. Wei and R. Wang,
@@ -20,11 +21,11 @@ use crate::error::observe;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Gradient {
-    /// Deviation of the kernel in 1/√n.
+    /// Deviation of the kernel in 1/√n, 1 at most.
     pub kernel: f64,
-    /// Bins to a unit of 1/√n.
+    /// Bins to a unit of 1/√n, 1000 at most.
     pub resolution: f64,
-    /// T to stop at.
+    /// T to stop at, 1 at most.
     pub smallest_step: f64,
     /// The most iterations.
     pub iterations: u32,
@@ -37,12 +38,20 @@ impl Default for Gradient {
 }
 
 impl Gradient {
+    /// Fields are public.
+    fn check(&self) -> Result<(), SampleError> {
+        check_range("kernel", self.kernel, 0.0, 1.0)?;
+        check_range("resolution", self.resolution, 0.0, 1000.0)?;
+        check_range("smallest-step", self.smallest_step, 0.0, 1.0)
+    }
+
     pub(super) fn run(
         &self,
         target: &Target,
         start: &PointSet,
         observer: &dyn Observer,
     ) -> Result<Outcome, SampleError> {
+        self.check()?;
         let root = (start.len() as f64).sqrt();
         let bins = ((0.5 * self.resolution * root) as usize).clamp(2, MOST_STRENGTHS - 1);
         let deviation = self.kernel / root;

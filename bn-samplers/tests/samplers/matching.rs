@@ -2,7 +2,7 @@
 
 use bn_core::{DVec2, Density, PointSet, Seed, Unobserved};
 use bn_samplers::{
-    Algorithm, FigureValue, Force, Given, Jittered, OptionError, OptionKind, OptionValues, Sample,
+    Algorithm, Annealing, FigureValue, Force, Given, Gradient, Jittered, OptionError, OptionKind, OptionValues, Sample,
     SampleError, Sampler, SinglePeak, Spectral, SpectrumMatching, Step, Stochastic, find,
 };
 use bn_spectral::{Target, WindowedSpectrum, highest_step, power_below};
@@ -292,7 +292,31 @@ fn fields_out_of_range_are_refused() {
         assert!(run(Algorithm::Spectral(spectral)).is_err());
         assert!(run(Algorithm::Force(Force { cooling: wrong, ..Force::default() })).is_err());
         assert!(run(Algorithm::Force(Force { coldest: wrong, ..Force::default() })).is_err());
+        for field in [|g: &mut Gradient| &mut g.kernel, |g| &mut g.smallest_step] {
+            let mut gradient = Gradient::default();
+            *field(&mut gradient) = wrong;
+            assert!(run(Algorithm::Gradient(gradient)).is_err());
+        }
+        for field in [|a: &mut Annealing| &mut a.cooling] {
+            let mut annealing = Annealing::default();
+            *field(&mut annealing) = wrong;
+            assert!(run(Algorithm::Annealing(annealing)).is_err());
+        }
     }
+    for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+        let gradient = Gradient { resolution: wrong, ..Gradient::default() };
+        assert!(run(Algorithm::Gradient(gradient)).is_err());
+        for field in [|a: &mut Annealing| &mut a.resolution, |a| &mut a.temperature] {
+            let mut annealing = Annealing::default();
+            *field(&mut annealing) = wrong;
+            assert!(run(Algorithm::Annealing(annealing)).is_err());
+        }
+    }
+    // The least that they allow.
+    let gradient = Gradient { kernel: 0.0, resolution: 0.0, smallest_step: 0.0, iterations: 20 };
+    assert_eq!(run(Algorithm::Gradient(gradient)).expect("possible").points.len(), n);
+    let annealing = Annealing { resolution: 0.0, temperature: 0.0, cooling: 0.0, iterations: 20 };
+    assert_eq!(run(Algorithm::Annealing(annealing)).expect("possible").points.len(), n);
     assert!(
         run(Algorithm::Spectral(Spectral { tolerance: Some(-1.0), ..Spectral::default() }))
             .is_err()
