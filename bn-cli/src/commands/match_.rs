@@ -166,7 +166,7 @@ fn start(file: &Path, n: Option<u32>) -> Outcome<PointSet> {
 
 impl Match {
     fn samples(&self, matching: &SpectrumMatching, global: &Global) -> Outcome<Vec<Sample>> {
-        let n = matching.target.density().points_per_unit_area() as usize;
+        let n = matching.target().density().points_per_unit_area() as usize;
         let bar = Bar::new(global.quiet);
         let failure = |error: bn_samplers::SampleError| {
             let usage = error.is_usage();

@@ -9,8 +9,10 @@ mod spectral;
 pub(crate) mod step;
 mod table_forces;
 
+use std::sync::OnceLock;
+
 use bn_core::{DVec2, Observer, PointSet, Seed};
-use bn_spectral::{Real, Target};
+use bn_spectral::{Real, Realizability, Target};
 
 use crate::error::check_count;
 use crate::{
@@ -141,20 +143,45 @@ impl End {
 /// assert!(residual < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct SpectrumMatching {
-    /// What to match, at the density of the points to make.
-    pub target: Target,
+    target: Target,
+    attainable: OnceLock<Attainable>,
     /// How.
     pub algorithm: Algorithm,
     /// Where to begin; random points if there is nothing.
     pub start: Option<PointSet>,
 }
 
+/// What is known of a target.
+#[derive(Clone, Copy, Debug)]
+struct Attainable {
+    /// P ≥ 0 and g ≥ 0.
+    realizable: bool,
+    /// Nor does anything else stand in its way.
+    unobjectionable: bool,
+}
+
 impl SpectrumMatching {
     /// The matching from random points.
     pub fn new(target: Target, algorithm: Algorithm) -> Self {
-        Self { target, algorithm, start: None }
+        Self { target, attainable: OnceLock::new(), algorithm, start: None }
+    }
+
+    /// What to match, at the density of the points to make.
+    pub fn target(&self) -> &Target {
+        &self.target
+    }
+
+    /// Found out once for all sets; for curves of many samples it takes longer than they do.
+    fn attainable(&self) -> Attainable {
+        // Threads don't wait for each other: the work is parallel itself, and would wait for itself.
+        if let Some(known) = self.attainable.get() {
+            return *known;
+        }
+        let verdict = Realizability::of(&self.target);
+        let (realizable, unobjectionable) = (verdict.realizable, verdict.is_unobjectionable());
+        *self.attainable.get_or_init(|| Attainable { realizable, unobjectionable })
     }
 
     /// How far `set` is from the target over frequencies up to 6√n; in double precision where single
@@ -195,7 +222,9 @@ impl Sampler for SpectrumMatching {
             });
         }
         let outcome = match &self.algorithm {
-            Algorithm::Spectral(spectral) => spectral.run(&self.target, &start, observer)?,
+            Algorithm::Spectral(spectral) => {
+                spectral.run(&self.target, self.attainable(), &start, observer)?
+            }
             Algorithm::Force(force) => force.run(&self.target, &start, observer)?,
             Algorithm::Gradient(gradient) => gradient.run(&self.target, &start, observer)?,
             Algorithm::Annealing(annealing) => {
@@ -227,5 +256,24 @@ const fn frequency(name: &'static str, default: &'static str, help: &'static str
         default: DefaultValue::Absent(default),
         help,
         unit: "cycles per unit",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bn_core::{Density, Unobserved};
+
+    #[test]
+    fn a_target_is_judged_once() {
+        let target = Target::step(Density::new(20), 2.0).expect("valid");
+        let matching = SpectrumMatching::new(target, Algorithm::default().with_iterations(1));
+        matching.sample(20, Seed::new(1), &Unobserved).expect("possible");
+        // What is kept is what counts from then on.
+        let known = *matching.attainable.get().expect("judged");
+        assert!(known.realizable && known.unobjectionable);
+        let other = OnceLock::from(Attainable { realizable: false, unobjectionable: false });
+        let matching = SpectrumMatching { attainable: other, ..matching };
+        assert!(!matching.attainable().realizable);
     }
 }

@@ -297,11 +297,8 @@ fn fields_out_of_range_are_refused() {
             *field(&mut gradient) = wrong;
             assert!(run(Algorithm::Gradient(gradient)).is_err());
         }
-        for field in [|a: &mut Annealing| &mut a.cooling] {
-            let mut annealing = Annealing::default();
-            *field(&mut annealing) = wrong;
-            assert!(run(Algorithm::Annealing(annealing)).is_err());
-        }
+        let annealing = Annealing { cooling: wrong, ..Annealing::default() };
+        assert!(run(Algorithm::Annealing(annealing)).is_err());
     }
     for wrong in [-1.0, f64::NAN, f64::INFINITY] {
         let gradient = Gradient { resolution: wrong, ..Gradient::default() };

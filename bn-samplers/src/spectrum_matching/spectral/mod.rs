@@ -5,9 +5,9 @@ mod objective;
 mod rings;
 
 use bn_core::{DVec2, Observer, PointSet, Progress, torus};
-use bn_spectral::{NufftError, NufftOptions, Real, Realizability, Target};
+use bn_spectral::{NufftError, NufftOptions, Real, Target};
 
-use super::{End, MEASURED, Outcome};
+use super::{Attainable, End, MEASURED, Outcome};
 use crate::SampleError;
 use crate::common_options::check_range;
 use crate::error::observe;
@@ -110,12 +110,12 @@ impl Spectral {
     pub(super) fn run(
         &self,
         target: &Target,
+        attainable: Attainable,
         start: &PointSet,
         observer: &dyn Observer,
     ) -> Result<Outcome, SampleError> {
         self.check()?;
-        let verdict = Realizability::of(target);
-        let weights = self.weights.completed(verdict.is_unobjectionable());
+        let weights = self.weights.completed(attainable.unobjectionable);
         let n = start.len();
         let root = (n as f64).sqrt();
         let mut x: Vec<DVec2> = start.points().iter().map(|p| *p * root).collect();
@@ -131,7 +131,7 @@ impl Spectral {
             if most == 0 {
                 continue;
             }
-            let pays = if last || verdict.realizable { u32::MAX } else { UNATTAINABLE };
+            let pays = if last || attainable.realizable { u32::MAX } else { UNATTAINABLE };
             let usual = self.evaluations.unwrap_or(usual).min(pays);
             let rings = Rings::new(target, max_frequency(range, n), weights);
             let search = Search { usual, most, goal, observer, number, before };
