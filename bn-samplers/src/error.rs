@@ -78,7 +78,28 @@ pub(crate) fn reserve<T>(n: usize) -> Result<Vec<T>, SampleError> {
     Ok(list)
 }
 
+/// Checks that the system doesn't refuse `bytes` at once, before work on `n` points is begun that
+/// takes them. It may promise more than it has.
+pub(crate) fn check_room(n: usize, bytes: usize) -> Result<(), SampleError> {
+    let mut room: Vec<u8> = Vec::new();
+    room.try_reserve_exact(bytes).map_err(|_| SampleError::OutOfMemory { n })?;
+    // Or else nothing is asked for.
+    std::hint::black_box(&room);
+    Ok(())
+}
+
 /// Tells the observer, and turns its wish to stop into an error.
 pub(crate) fn observe(observer: &dyn Observer, progress: &Progress<'_>) -> Result<(), SampleError> {
     if observer.observe(progress).is_break() { Err(SampleError::Cancelled) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_system_has_all_memory() {
+        assert_eq!(check_room(7, usize::MAX), Err(SampleError::OutOfMemory { n: 7 }));
+        assert_eq!(check_room(7, 1 << 10), Ok(()));
+    }
 }

@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 use bn_core::{DVec2, Observer, PointSet, Seed};
 use bn_spectral::{Real, Realizability, Target};
 
-use crate::error::check_count;
+use crate::error::{check_count, check_room};
 use crate::{
     DefaultValue, OptionKind, OptionSpec, Report, Sample, SampleError, Sampler, Stochastic,
 };
@@ -197,7 +197,20 @@ impl SpectrumMatching {
         self.residual_to::<f64>(set, spectral::FINE_TOLERANCE)
     }
 
-    fn residual_to<T: Real>(&self, set: &PointSet, tolerance: f64) -> Result<Residual, SampleError> {
+    /// Bytes that a set of `n` points takes to make and to measure, beyond the points.
+    fn bytes(&self, n: usize) -> usize {
+        let measure = Match::<f32>::bytes(spectral::max_frequency(MEASURED, n), n);
+        match &self.algorithm {
+            Algorithm::Spectral(spectral) => spectral.bytes(n).max(measure),
+            _ => measure,
+        }
+    }
+
+    fn residual_to<T: Real>(
+        &self,
+        set: &PointSet,
+        tolerance: f64,
+    ) -> Result<Residual, SampleError> {
         let limit = spectral::max_frequency(MEASURED, set.len());
         let rings = Rings::new(&self.target, limit, Weights::default());
         let mut measure = spectral::plan(Match::<T>::new(rings, set.len(), tolerance))?;
@@ -208,6 +221,7 @@ impl SpectrumMatching {
 impl Sampler for SpectrumMatching {
     fn sample(&self, n: usize, seed: Seed, observer: &dyn Observer) -> Result<Sample, SampleError> {
         check_count("spectrum matching", n)?;
+        check_room(n, self.bytes(n))?;
         let wanted = self.target.density().points_per_unit_area();
         let start = match &self.start {
             Some(start) => start.clone(),

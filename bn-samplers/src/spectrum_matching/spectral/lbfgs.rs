@@ -73,6 +73,12 @@ impl Lbfgs {
         Self { gradient, value, pairs, direction, trial, evaluations: 1, limit, x }
     }
 
+    /// Bytes that a minimisation of `n` points takes.
+    pub(super) fn bytes(n: usize) -> usize {
+        // Place, gradient and direction, a place and gradient on trial, and the pairs.
+        n.saturating_mul((5 + 2 * MEMORY) * size_of::<DVec2>())
+    }
+
     /// The value at the present place.
     pub(super) fn value(&self) -> f64 {
         self.value

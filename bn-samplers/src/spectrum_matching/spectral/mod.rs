@@ -107,6 +107,17 @@ impl Spectral {
         self.ranges.iter().try_for_each(|&range| check_range("range", range, 0.0, 16.0))
     }
 
+    /// Bytes that a search among `n` points takes, about.
+    pub(super) fn bytes(&self, n: usize) -> usize {
+        let highest = self.ranges.iter().map(|&range| max_frequency(range, n)).max().unwrap_or(0);
+        let cost = if Goal::of(self.tolerance).is_fine() {
+            Match::<f64>::bytes(highest, n)
+        } else {
+            Match::<f32>::bytes(highest, n)
+        };
+        Lbfgs::bytes(n).saturating_add(cost)
+    }
+
     pub(super) fn run(
         &self,
         target: &Target,

@@ -50,6 +50,15 @@ impl<T: Real> Match<T> {
         })
     }
 
+    /// Bytes that a cost takes, to some tens of percent.
+    pub(in super::super) fn bytes(max_frequency: usize, n: usize) -> usize {
+        // Modes on a half plane and, in as many columns, the rows of a grid three times as fine.
+        let cells = max_frequency.saturating_mul(max_frequency).saturating_mul(2 + 3);
+        // Points and slopes, and what the transforms keep of each point twice.
+        let each = 2 * size_of::<DVec2>() + 2 * (3 * size_of::<u32>() + 2 * size_of::<T>());
+        n.saturating_mul(each).saturating_add(cells.saturating_mul(2 * size_of::<T>()))
+    }
+
     /// How far the last set that was evaluated is from the target.
     pub(in super::super) fn residual(&self) -> Residual {
         self.rings.residual(&self.sums)
@@ -203,6 +212,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_modes_are_most_of_what_is_needed() {
+        for limit in [100, 1000] {
+            let modes = size_of_val(HalfPlane::<f32>::zeros(limit).values());
+            assert!((2 * modes..4 * modes).contains(&Match::<f32>::bytes(limit, limit)));
+        }
+        let n = bn_core::PointSet::MAX_POINTS;
+        assert!(Match::<f64>::bytes(NufftOptions::MAX_FREQUENCY, n) > 100 * n);
     }
 
     #[test]
