@@ -15,7 +15,7 @@ use crate::error::observe;
 /// One random point at a time is moved at random; the move is kept if it lowers the energy, the
 /// squared difference of pair counts from those wanted over what their noise would be, and else with
 /// the probability e^(−ΔE/T). After each sweep over all points T and, where too few moves are kept,
-/// their length are lowered. A move costs O(n).
+/// their length are lowered. A move costs O(n), and so do the counts that it changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Annealing {
@@ -25,16 +25,21 @@ pub struct Annealing {
     pub temperature: f64,
     /// The factor of T after each sweep, 1 at most.
     pub cooling: f64,
+    /// T to stop at.
+    pub coldest: f64,
     /// The most sweeps.
     pub iterations: u32,
 }
 
 impl Default for Annealing {
     fn default() -> Self {
-        Self { resolution: 20.0, temperature: 1.0, cooling: 0.95, iterations: 400 }
+        // 405 sweeps.
+        Self { resolution: 20.0, temperature: 1.0, cooling: 0.95, coldest: 1e-9, iterations: 1000 }
     }
 }
 
+/// Distances computed between two looks of the observer: some tens of milliseconds.
+const UNOBSERVED: usize = 1 << 22;
 /// The stream of a seed that moves are drawn from; starting points have the first ones.
 const TASK: u32 = u32::MAX;
 
@@ -43,7 +48,8 @@ impl Annealing {
     fn check(&self) -> Result<(), SampleError> {
         check_range("resolution", self.resolution, 0.0, 1000.0)?;
         check_range("temperature", self.temperature, 0.0, 1e9)?;
-        check_range("cooling", self.cooling, 0.0, 1.0)
+        check_range("cooling", self.cooling, 0.0, 1.0)?;
+        check_range("coldest", self.coldest, 0.0, 1e9)
     }
 
     pub(super) fn run(
@@ -59,14 +65,17 @@ impl Annealing {
         let bins = ((0.5 * self.resolution * root) as usize).clamp(2, 1 << 20);
         let mut state = State::new(target, start, bins);
         let mut rng = seed.stream(TASK);
-        let (mut temperature, mut length) = (self.temperature, 0.5);
-        for sweep in 0..self.iterations {
-            let figures = [("energy", state.energy()), ("temperature", temperature)];
-            let progress = Progress::new("annealing", sweep.into(), Some(self.iterations.into()));
-            observe(observer, &progress.with_figures(&figures))?;
+        let (mut temperature, mut length, mut sweep) = (self.temperature, 0.5, 0);
+        while temperature >= self.coldest && sweep < self.iterations {
             observer.iterated(sweep.into(), &|| state.points.clone());
             let mut kept = 0;
-            for _ in 0..n {
+            for step in 0..n {
+                if step.is_multiple_of((UNOBSERVED / n).max(1)) {
+                    let figures = [("energy", state.energy()), ("temperature", temperature)];
+                    let most = Some(self.iterations.into());
+                    let progress = Progress::new("annealing", sweep.into(), most);
+                    observe(observer, &progress.with_figures(&figures))?;
+                }
                 let index = rng.random_range(0..n as u32) as usize;
                 let step = DVec2::new(rng.random::<f64>() - 0.5, rng.random::<f64>() - 0.5);
                 let chance: f64 = rng.random();
@@ -79,8 +88,10 @@ impl Annealing {
             }
             temperature *= self.cooling;
             length = if 5 * kept < n { (0.9 * length).max(1e-4) } else { (1.05 * length).min(0.5) };
+            sweep += 1;
         }
-        Ok(Outcome { points: state.points, iterations: self.iterations, end: End::Iterations })
+        let end = if temperature < self.coldest { End::Temperature } else { End::Iterations };
+        Ok(Outcome { points: state.points, iterations: sweep, end })
     }
 }
 
@@ -95,6 +106,8 @@ struct State {
     /// Changes of counts by the move at hand, and the bins that change.
     delta: Vec<f64>,
     touched: Vec<usize>,
+    /// Whether a bin is among them.
+    is_touched: Vec<bool>,
 }
 
 impl State {
@@ -112,6 +125,7 @@ impl State {
             weights: (0..bins).map(|i| 1.0 / expected(i).max(1.0)).collect(),
             delta: vec![0.0; bins],
             touched: Vec::new(),
+            is_touched: vec![false; bins],
         }
     }
 
@@ -124,6 +138,7 @@ impl State {
     fn change(&mut self, index: usize, place: DVec2) -> f64 {
         for bin in self.touched.drain(..) {
             self.delta[bin] = 0.0;
+            self.is_touched[bin] = false;
         }
         let from = self.points[index];
         for (other, &q) in self.points.iter().enumerate() {
@@ -134,13 +149,14 @@ impl State {
                 let bin = (torus::distance(p, q) * self.bins_per_unit) as usize;
                 if bin < self.delta.len() {
                     self.delta[bin] += sign;
-                    self.touched.push(bin);
+                    // Bins come up several times; each counts once.
+                    if !self.is_touched[bin] {
+                        self.is_touched[bin] = true;
+                        self.touched.push(bin);
+                    }
                 }
             }
         }
-        // Bins come up several times; each counts once.
-        self.touched.sort_unstable();
-        self.touched.dedup();
         let change = |&bin: &usize| {
             let (delta, excess) = (self.delta[bin], self.excess[bin]);
             self.weights[bin] * delta * (2.0 * excess + delta)
@@ -162,6 +178,8 @@ mod tests {
     use super::*;
     use crate::stochastic::uniform_points;
     use bn_core::Density;
+    use std::ops::ControlFlow;
+    use std::sync::atomic::{AtomicU32, Ordering};
 
     #[test]
     fn changes_of_the_energy_are_its_differences() {
@@ -180,5 +198,37 @@ mod tests {
             assert!((before + change - state.energy()).abs() < 1e-9 * before);
             assert!((fresh - state.energy()).abs() < 1e-9 * before, "{fresh} {}", state.energy());
         }
+    }
+
+    /// Ends at its third look.
+    #[derive(Default)]
+    struct Impatient(AtomicU32);
+
+    impl Observer for Impatient {
+        fn observe(&self, _: &Progress<'_>) -> ControlFlow<()> {
+            match self.0.fetch_add(1, Ordering::Relaxed) {
+                2 => ControlFlow::Break(()),
+                _ => ControlFlow::Continue(()),
+            }
+        }
+    }
+
+    #[test]
+    fn a_sweep_can_be_ended_halfway() {
+        let n = 4096;
+        let set = PointSet::new(uniform_points(n, Seed::new(4), 0).expect("few")).expect("valid");
+        let target = Target::step(Density::new(n), 30.0).expect("valid");
+        let sweep = Annealing { iterations: 1, ..Annealing::default() };
+        let result = sweep.run(&target, &set, Seed::new(1), &Impatient::default());
+        assert!(matches!(result, Err(SampleError::Cancelled)));
+    }
+
+    #[test]
+    fn the_schedule_has_an_end() {
+        let target = Target::step(Density::new(9), 1.0).expect("valid");
+        let set = PointSet::new(uniform_points(9, Seed::new(4), 0).expect("few")).expect("valid");
+        let outcome = Annealing::default().run(&target, &set, Seed::new(1), &bn_core::Unobserved);
+        let outcome = outcome.expect("possible");
+        assert_eq!((outcome.iterations, outcome.end), (405, End::Temperature));
     }
 }

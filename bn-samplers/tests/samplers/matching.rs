@@ -2,8 +2,9 @@
 
 use bn_core::{DVec2, Density, PointSet, Seed, Unobserved};
 use bn_samplers::{
-    Algorithm, Annealing, FigureValue, Force, Given, Gradient, Jittered, OptionError, OptionKind, OptionValues, Sample,
-    SampleError, Sampler, SinglePeak, Spectral, SpectrumMatching, Step, Stochastic, find,
+    Algorithm, Annealing, FigureValue, Force, Given, Gradient, Jittered, OptionError, OptionKind,
+    OptionValues, Sample, SampleError, Sampler, SinglePeak, Spectral, SpectrumMatching, Step,
+    Stochastic, find,
 };
 use bn_spectral::{Target, WindowedSpectrum, highest_step, power_below};
 
@@ -215,7 +216,8 @@ fn searches_end_as_they_are_told_to() {
     ended(&run(&step(n), Algorithm::default()), "tolerance", true);
     let mut before = 0;
     for tolerance in ["1e-1", "1e-2", "1e-3", "1e-6"] {
-        let sample = run(&step(n), Algorithm::Spectral(spectral(&[("tolerance", tolerance)])));
+        let given = [("tolerance", tolerance), ("evaluations", "3000")];
+        let sample = run(&step(n), Algorithm::Spectral(spectral(&given)));
         ended(&sample, "tolerance", true);
         let bound: f64 = tolerance.parse().expect("a number");
         assert!(figure(&sample, "residual") <= 1.01 * bound, "{tolerance}: {:?}", sample.report);
@@ -292,7 +294,9 @@ fn fields_out_of_range_are_refused() {
         assert!(run(Algorithm::Spectral(spectral)).is_err());
         assert!(run(Algorithm::Force(Force { cooling: wrong, ..Force::default() })).is_err());
         assert!(run(Algorithm::Force(Force { coldest: wrong, ..Force::default() })).is_err());
-        for field in [|g: &mut Gradient| &mut g.kernel, |g| &mut g.smallest_step] {
+        let fields: [fn(&mut Gradient) -> &mut f64; 2] =
+            [|g| &mut g.kernel, |g| &mut g.smallest_step];
+        for field in fields {
             let mut gradient = Gradient::default();
             *field(&mut gradient) = wrong;
             assert!(run(Algorithm::Gradient(gradient)).is_err());
@@ -303,7 +307,9 @@ fn fields_out_of_range_are_refused() {
     for wrong in [-1.0, f64::NAN, f64::INFINITY] {
         let gradient = Gradient { resolution: wrong, ..Gradient::default() };
         assert!(run(Algorithm::Gradient(gradient)).is_err());
-        for field in [|a: &mut Annealing| &mut a.resolution, |a| &mut a.temperature] {
+        let fields: [fn(&mut Annealing) -> &mut f64; 3] =
+            [|a| &mut a.resolution, |a| &mut a.temperature, |a| &mut a.coldest];
+        for field in fields {
             let mut annealing = Annealing::default();
             *field(&mut annealing) = wrong;
             assert!(run(Algorithm::Annealing(annealing)).is_err());
@@ -312,7 +318,8 @@ fn fields_out_of_range_are_refused() {
     // The least that they allow.
     let gradient = Gradient { kernel: 0.0, resolution: 0.0, smallest_step: 0.0, iterations: 20 };
     assert_eq!(run(Algorithm::Gradient(gradient)).expect("possible").points.len(), n);
-    let annealing = Annealing { resolution: 0.0, temperature: 0.0, cooling: 0.0, iterations: 20 };
+    let annealing =
+        Annealing { resolution: 0.0, temperature: 0.0, cooling: 0.0, coldest: 0.0, iterations: 20 };
     assert_eq!(run(Algorithm::Annealing(annealing)).expect("possible").points.len(), n);
     assert!(
         run(Algorithm::Spectral(Spectral { tolerance: Some(-1.0), ..Spectral::default() }))
