@@ -13,6 +13,8 @@ use bn_samplers::{Hexagonal, Sampler as _};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
+use super::store::hash_points;
+
 /// Side of the large image, rasterised once at its pixels' centres.
 const LARGE: u32 = 2560;
 
@@ -101,11 +103,7 @@ impl Downsampling {
         for image in [&self.reference, &self.dense] {
             image.values().iter().for_each(|value| hasher.write_u32(value.to_bits()));
         }
-        for set in sets {
-            hasher.write_usize(set.len());
-            let coordinates = set.points().iter().flat_map(|p| [p.x, p.y]);
-            coordinates.for_each(|x| hasher.write_u64(x.to_bits()));
-        }
+        sets.iter().for_each(|set| hash_points(set, &mut hasher));
         hasher.finish()
     }
 

@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::thesis::{Quantity, RowSpec};
-pub(crate) use store::Store;
+pub(crate) use store::{Store, hash_points, program_digest};
 
 /// How many points, in how many sets, from which seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

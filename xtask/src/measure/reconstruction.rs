@@ -95,13 +95,16 @@ pub(crate) struct Made {
 }
 
 impl Subject {
+    /// What the scenes of [`Subject::both`] are called.
+    pub(crate) const NAMES: [&str; 2] = ["zone plate up to 0.4 cycles per pixel", "sphere scene"];
+
     /// One scene with a band, one with edges, at so many pixels a side.
     pub(crate) fn both(side: u32) -> Outcome<[Self; 2]> {
         let frame = Frame::new(side, side).map_err(Failure::failed)?;
         let plate = LimitedZonePlate::new(&frame, 0.4, 0.5 * f64::from(side));
         Ok([
-            Self::new("zone plate up to 0.4 cycles per pixel", Box::new(plate), frame)?,
-            Self::new("sphere scene", Box::new(SphereScene::new(&frame, 1.0)), frame)?,
+            Self::new(Self::NAMES[0], Box::new(plate), frame)?,
+            Self::new(Self::NAMES[1], Box::new(SphereScene::new(&frame, 1.0)), frame)?,
         ])
     }
 

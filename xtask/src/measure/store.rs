@@ -1,6 +1,7 @@
 //! Point sets on disk, by all that decides their bytes.
 
 use std::fs;
+use std::hash::{DefaultHasher, Hasher};
 use std::path::PathBuf;
 
 use bn_cli::{Failure, Outcome, input, output, output_points};
@@ -80,6 +81,20 @@ impl Notes {
             Ok(serde_json::to_writer(w, measured).map_err(std::io::Error::from)?)
         })
     }
+}
+
+/// A digest of this program's file: another build may measure otherwise.
+pub(crate) fn program_digest() -> Outcome<u64> {
+    let mut hasher = DefaultHasher::new();
+    hasher.write(&fs::read(std::env::current_exe()?)?);
+    Ok(hasher.finish())
+}
+
+/// Feeds a set's points to a digest.
+pub(crate) fn hash_points(set: &PointSet, hasher: &mut impl Hasher) {
+    hasher.write_usize(set.len());
+    let coordinates = set.points().iter().flat_map(|p| [p.x, p.y]);
+    coordinates.for_each(|x| hasher.write_u64(x.to_bits()));
 }
 
 /// Every option of the method as `name=value`, given or default, fit for a file name.

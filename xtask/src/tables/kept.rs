@@ -1,14 +1,13 @@
 //! Tables that need not be made again.
 
 use std::fs;
-use std::hash::{DefaultHasher, Hasher as _};
 use std::path::{Path, PathBuf};
 
 use bn_cli::{Outcome, output};
 use serde::{Deserialize, Serialize};
 
 use super::Tally;
-use crate::measure::Plan;
+use crate::measure::{Plan, program_digest};
 
 /// What decides a table: how many points in how many sets, and the program, its data included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -21,9 +20,7 @@ pub(super) struct Maker {
 impl Maker {
     /// This program, by a plan.
     pub(super) fn this(plan: Plan) -> Outcome<Self> {
-        let mut hasher = DefaultHasher::new();
-        hasher.write(&fs::read(std::env::current_exe()?)?);
-        Ok(Self { plan, program: hasher.finish() })
+        Ok(Self { plan, program: program_digest()? })
     }
 }
 
