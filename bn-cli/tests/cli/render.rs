@@ -155,6 +155,43 @@ fn patterns_are_methods_files_or_supersampling_sets() {
 }
 
 #[test]
+fn the_account_and_the_picture_say_how_it_was_made() {
+    let folder = Folder::new();
+    folder.bn("generate jittered -n 64 --seed 9 -o p.txt").done();
+    let account = |words: &str| folder.bn(&format!("{words} --json")).done().json();
+    let words = "render zone-plate --frequency 0.4 --size 20x10 --pattern p.txt";
+    let varied = account(&format!("{words} --vary-tiles both --seed 7 --kernel box -o a.png"));
+    assert_eq!((&varied["seed"], &varied["vary_tiles"]), (&7.into(), &"both".into()));
+    assert_eq!(varied["scene_options"], serde_json::json!({"frequency": 0.4}));
+    // The file holds what was asked for as well.
+    let bytes = folder.read("a.png");
+    let reader = png::Decoder::new(std::io::Cursor::new(&bytes[..])).read_info().unwrap();
+    let texts = &reader.info().uncompressed_latin1_text;
+    let note = texts.iter().find(|text| text.keyword == "Comment").expect("a comment");
+    let noted: serde_json::Value = serde_json::from_str(&note.text).unwrap();
+    for (key, value) in noted.as_object().unwrap() {
+        assert_eq!(*value, varied[key], "{key}");
+    }
+    assert_eq!((&noted["seed"], &noted["kernel"]), (&7.into(), &"box".into()));
+    // Nothing hangs on a seed here.
+    let plain = account(words);
+    assert_eq!((&plain["seed"], &plain["vary_tiles"]), (&serde_json::Value::Null, &"none".into()));
+    assert_eq!(account("render sphere --size 9x9 --pattern jittered -n 9")["seed"], 1);
+    // The reference's kernel, where the picture has none.
+    let words = "render zone-plate --size 20x10 --supersampling quincunx --kernel gaussian";
+    for (reference, key) in [("exact", "change"), ("64", "spp")] {
+        let account = account(&format!("{words} --reference {reference}"));
+        assert!(account["kernel"].is_null() && account["seed"].is_null(), "{account}");
+        assert_eq!(account["reference"]["kernel"], "gaussian");
+        assert!(account["reference"][key].is_number(), "{account}");
+    }
+    let words = "render zone-plate --size 20x10 --pattern p.txt --reconstruct act";
+    let fitted = account(&format!("{words} --iterations 4 --border periodic"));
+    assert_eq!((&fitted["most_iterations"], &fitted["border"]), (&4.into(), &"periodic".into()));
+    assert!(fitted["band"].is_number() && fitted["tolerance"] == 1e-6, "{fitted}");
+}
+
+#[test]
 fn what_a_scene_is_known_for_is_not_evaluated() {
     let folder = Folder::new();
     let words = "render checkerboard --horizon 0.5 --size 128x128 --pattern fpo -n 256 --json";
@@ -169,6 +206,8 @@ fn bad_use_is_refused_with_a_reason() {
     let folder = Folder::new();
     folder.file("words.png", "no image");
     folder.file("two.dat", "2\n0.1 0.2\n0.3 0.4\n#\n2\n0.1 0.2\n0.3 0.4\n");
+    folder.file("one.txt", "2\n0.1 0.2\n0.3 0.4\n");
+    folder.file("light.pfm", [&b"Pf\n1 1\n-1\n"[..], &0.5_f32.to_le_bytes()].concat());
     let plate = "render zone-plate --pattern halton -n 64";
     for (words, said) in [
         ("render nosuch --pattern halton -o a.png", "zone-plate"),
@@ -188,6 +227,20 @@ fn bad_use_is_refused_with_a_reason() {
         ("render zone-plate --supersampling quincunx --spp 4 -o a.png", "--spp"),
         ("render sphere --frequency 2 --pattern halton -o a.png", "--frequency"),
         ("render sphere --interpolation box --pattern halton -o a.png", "--interpolation"),
+        // What nothing hangs on is no option.
+        ("render zone-plate --pattern one.txt --seed 2 -o a.png", "--seed"),
+        ("render zone-plate --supersampling quincunx --seed 2 -o a.png", "--seed"),
+        ("render zone-plate --supersampling quincunx --kernel box -o a.png", "--kernel"),
+        ("render light.pfm --scene-encoding linear --pattern one.txt -o a.png", ".png only"),
+        // Numbers are looked at before patterns are made or read.
+        ("render zone-plate --pattern absent.txt --spp 0 -o a.png", "samples per pixel"),
+        (
+            "render zone-plate --pattern absent.txt --adaptive 0.1 --max-spp 1e9 -o a.png",
+            "samples per pixel",
+        ),
+        ("render zone-plate --pattern absent.txt --reconstruct act --band 0 -o a.png", "--band 0"),
+        ("render zone-plate --pattern absent.txt --reference nan -o a.png", "samples per pixel"),
+        ("render zone-plate --pattern absent.txt --reference light.pfm -o a.png", "512×512"),
     ] {
         folder.bn(words).refused(2, &[said]);
     }
@@ -206,6 +259,19 @@ fn bad_use_is_refused_with_a_reason() {
         ("--kernel nosuch -o a.png", "lanczos2"),
         ("--frequency inf -o a.png", "frequency"),
         ("--error e.png -o a.png", "--reference"),
+        ("--error - --reference exact -o a.png", "--error -"),
+        ("--error a.png --reference exact -o a.png", "file of its own"),
+        ("--error ./a.png --reference exact -o a.png", "file of its own"),
+        ("--error e.png --error-gain nan --reference exact", "--error-gain"),
+        ("--error e.png --error-gain inf --reference exact", "--error-gain"),
+        ("--error e.png --error-gain -1 --reference exact", "--error-gain"),
+        ("--error e.pfm --error-gain 2 --reference exact", ".png only"),
+        ("--error-gain 2 --reference exact", "--error"),
+        ("--depth 16 -o a.pfm", ".png only"),
+        ("--encoding linear -o a.pfm", ".png only"),
+        ("--depth 16 --json", "--output"),
+        ("--encoding linear --json", "--output"),
+        ("--format pfm --json", "--output"),
         ("--reference absent.png -o a.png", "absent.png"),
         ("--reference 0 -o a.png", "samples per pixel"),
         ("--size 1048576x1048576 --reference exact --json", "1048576"),
@@ -213,7 +279,7 @@ fn bad_use_is_refused_with_a_reason() {
         folder.bn(&format!("{plate} {words}")).refused(2, &[said]);
     }
     folder.bn(&format!("{plate} --size 8x8 -o absent/a.png")).refused(1, &["absent"]);
-    assert_eq!(folder.names(), ["two.dat", "words.png"]);
+    assert_eq!(folder.names(), ["light.pfm", "one.txt", "two.dat", "words.png"]);
 }
 
 #[test]

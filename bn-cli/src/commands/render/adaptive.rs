@@ -1,6 +1,6 @@
 //! `--adaptive`: as many samples as an error takes, block by block.
 
-use bn_core::{Observer, PointSet, Seed};
+use bn_core::{DVec2, Observer, PointSet, Seed};
 use bn_render::{
     AdaptiveRenderer, AdaptiveStats, KernelTable, Normalization, ProgressivePattern, RenderStats,
     TileVariation,
@@ -67,6 +67,10 @@ impl AdaptiveArgs {
                 self.max_spp
             )));
         }
+        // Its rates are refused whatever the set.
+        let point = PointSet::new(vec![DVec2::ZERO]).map_err(Failure::failed)?;
+        ProgressivePattern::new(&point, pilot, self.max_spp, Seed::new(0))
+            .map_err(Failure::usage)?;
         Ok(())
     }
 
@@ -129,21 +133,24 @@ impl Adaptive {
         }
     }
 
-    /// The keys of the account that adaptive sampling has beside the others.
-    pub(super) fn account(&self, stats: &AdaptiveStats, mse: Option<f64>) -> Value {
-        json!({
-            "max_spp": self.most,
-            "spp_mean": mean_rate(stats),
-            "pilot_samples": stats.pilot_samples,
-            "blocks": stats.blocks,
-            "blocks_refined": stats.blocks_refined,
-            "blocks_unresolved": stats.blocks_unresolved,
-            "error_target": self.error,
-            "error_estimated": stats.error_estimated,
-            "error_worst": stats.error_worst,
-            "error_true": mse.map(f64::sqrt),
-        })
+    /// What the account has beside of what was asked for.
+    pub(super) fn settings(&self) -> Value {
+        json!({"error_target": self.error, "max_spp": self.most})
     }
+}
+
+/// The keys of the account that adaptive sampling has beside the others.
+pub(super) fn account(stats: &AdaptiveStats, mse: Option<f64>) -> Value {
+    json!({
+        "spp_mean": mean_rate(stats),
+        "pilot_samples": stats.pilot_samples,
+        "blocks": stats.blocks,
+        "blocks_refined": stats.blocks_refined,
+        "blocks_unresolved": stats.blocks_unresolved,
+        "error_estimated": stats.error_estimated,
+        "error_worst": stats.error_worst,
+        "error_true": mse.map(f64::sqrt),
+    })
 }
 
 /// The counters that every rendering has.

@@ -1,26 +1,26 @@
 //! `bn render`: images from sampling patterns.
 
 mod adaptive;
+mod files;
 mod reconstruction;
 mod reference;
 mod sampling;
 mod scene;
 
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use bn_render::{
-    BitDepth, Encoding, Image, Normalization, PngOptions, SCENES, SUPERSAMPLING, difference,
-    error_picture, mean_square_error, peak_signal_to_noise,
+    Image, Normalization, SCENES, SUPERSAMPLING, mean_square_error, peak_signal_to_noise,
 };
-use clap::{Args, Command, ValueEnum};
+use clap::{Args, Command};
 use serde_json::{Value, json};
 
+use self::files::{FileArgs, Targets};
 use self::reference::Reference;
 use self::sampling::{Done, Sampling, SamplingArgs};
-use self::scene::{Curve, SceneArgs, Subject};
+use self::scene::{SceneArgs, Subject};
 use super::Global;
-use crate::image_file::{ImageFormat, Rows, Target};
+use crate::image_file::{Rows, Target};
 use crate::progress_bar::Bar;
 use crate::{Failure, Outcome, output};
 
@@ -30,47 +30,17 @@ pub(super) struct Render {
     scene: SceneArgs,
     #[command(flatten)]
     sampling: SamplingArgs,
-    /// Image to write: .png, .pfm or .exr; `-` is standard output (with --format)
-    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
-    output: Option<PathBuf>,
-    /// Format of the output: png, pfm or exr (default: by the file's extension)
-    #[arg(long, value_name = "FORMAT", help_heading = "Output")]
-    format: Option<ImageFormat>,
-    /// Bits for each channel of a .png
-    #[arg(long, value_name = "BITS", default_value = "8", help_heading = "Output")]
-    depth: Depth,
-    /// Curve of a .png's values; the file names it
-    #[arg(long, value_name = "CURVE", default_value = "srgb", help_heading = "Output")]
-    encoding: Curve,
+    #[command(flatten)]
+    files: FileArgs,
     /// What the image is held against: an image file, `exact` for the scene convolved with the kernel,
     /// or a number for a hexagonal lattice of so many samples per pixel. Images are held in memory
     #[arg(long, value_name = "FILE|exact|SPP", help_heading = "Output",
           value_parser = |text: &str| Ok::<_, String>(Reference::from(text)))]
     reference: Option<Reference>,
-    /// The error image: a .png shows it about middle grey, .pfm and .exr hold image less reference
-    #[arg(long, value_name = "FILE", requires = "reference", help_heading = "Output")]
-    error: Option<PathBuf>,
-    /// Enlarge the error so many times in a .png
-    #[arg(
-        long,
-        value_name = "TIMES",
-        default_value = "1",
-        requires = "error",
-        help_heading = "Output"
-    )]
-    error_gain: f32,
     /// A JSON account on standard output: width, height, spp, samples, `samples_skipped`, mse, psnr,
     /// seconds and what was asked for; with --reconstruct act or pocs also iterations and residual
     #[arg(long, help_heading = "Output")]
     json: bool,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Depth {
-    #[value(name = "8")]
-    Eight,
-    #[value(name = "16")]
-    Sixteen,
 }
 
 pub(super) fn command() -> Command {
@@ -101,13 +71,21 @@ pub(super) fn command() -> Command {
 }
 
 pub(super) fn run(args: &Render, global: &Global) -> Outcome {
-    let targets = args.targets()?;
+    let mut targets = args.targets()?;
     let subject = args.scene.subject()?;
+    let reference = args.reference.as_ref().map(|reference| reference.prepared(&subject));
+    let reference = reference.transpose()?;
     let bar = Bar::new(global.quiet);
     let start = Instant::now();
     let (sampling, pattern) = args.sampling.sampling(&bar)?;
     let pattern_seconds = start.elapsed().as_secs_f64();
-    let reference = args.reference(&subject, &sampling, global)?;
+    let settings = args.settings(&subject, &sampling, &pattern);
+    targets.note(&settings);
+    // Made first, so that a bad one is refused before anything is written.
+    let normalization = sampling.normalization().unwrap_or_default();
+    let filter = (args.sampling.kernel(), normalization);
+    let reference = reference.map(|reference| reference.image(&subject, filter, global, &bar));
+    let reference = reference.transpose()?;
     let start = Instant::now();
     let (done, image) = args.render(&subject, &sampling, &bar, targets.image.as_ref())?;
     let seconds = start.elapsed().as_secs_f64();
@@ -126,36 +104,28 @@ pub(super) fn run(args: &Render, global: &Global) -> Outcome {
     }
     let compared = match (&reference, &image) {
         (Some((reference, account)), Some(image)) => {
-            if let Some(target) = &targets.error {
-                args.write_error(image, reference, target)?;
-            }
+            targets.write_error(image, reference)?;
             let mse = mean_square_error(image, reference).map_err(Failure::usage)?;
             Some(Compared { mse, reference: account })
         }
         _ => None,
     };
-    let account = args.account(&subject, &sampling, &done, compared.as_ref(), &pattern);
     if args.json {
-        let mut account = account;
-        account["seconds"] = json!(seconds);
-        account["pattern_seconds"] = json!(pattern_seconds);
+        let mut account = settings;
+        extend(&mut account, results(&sampling, &done, compared.as_ref()));
+        let time = json!({"seconds": seconds, "pattern_seconds": pattern_seconds});
+        extend(&mut account, time);
         return output::write_stdout(|w| Ok(writeln!(w, "{account:#}")?));
     }
     if let Some(Compared { mse, .. }) = compared {
         let text = format!("psnr {:.2} dB, mse {mse:.4e}", peak_signal_to_noise(mse));
-        if args.writes_stdout() {
+        if args.files.writes_stdout() {
             global.remark(text);
         } else {
             output::write_stdout(|w| Ok(writeln!(w, "{text}")?))?;
         }
     }
     Ok(())
-}
-
-/// Files to write.
-struct Targets<'a> {
-    image: Option<Target<'a>>,
-    error: Option<Target<'a>>,
 }
 
 /// An image held against its reference.
@@ -182,44 +152,19 @@ fn collect<T>(
 }
 
 impl Render {
-    fn writes_stdout(&self) -> bool {
-        [&self.output, &self.error].into_iter().flatten().any(|path| path == Path::new("-"))
-    }
-
-    /// The files to write, checked as far as that goes before any work.
+    /// The files to write; what makes no sense is refused before any work.
     fn targets(&self) -> Outcome<Targets<'_>> {
-        if self.json && self.writes_stdout() {
+        if self.json && self.files.writes_stdout() {
             return Err(Failure::misuse(
                 "--json needs standard output for itself; name a file with -o",
             ));
         }
-        if self.output.is_none() && !self.json && self.reference.is_none() {
+        if !self.files.is_wanted() && !self.json && self.reference.is_none() {
             return Err(Failure::misuse("where to? name an image file with -o, or ask for --json"));
         }
-        let about = |title: &str| {
-            let version = concat!("bn ", env!("CARGO_PKG_VERSION"));
-            vec![
-                ("Software".to_owned(), version.to_owned()),
-                ("Title".to_owned(), title.to_owned()),
-            ]
-        };
-        let image = self.output.as_deref().map(|path| {
-            let png = PngOptions {
-                depth: match self.depth {
-                    Depth::Eight => BitDepth::Eight,
-                    Depth::Sixteen => BitDepth::Sixteen,
-                },
-                encoding: Encoding::from(self.encoding),
-                text: about("rendering"),
-                ..PngOptions::default()
-            };
-            target(path, self.format, png)
-        });
-        let error = self.error.as_deref().map(|path| {
-            let png = PngOptions { text: about("error"), ..PngOptions::default() };
-            target(path, None, png)
-        });
-        Ok(Targets { image: image.transpose()?, error: error.transpose()? })
+        let takes_kernel = self.reference.as_ref().is_some_and(Reference::takes_kernel);
+        self.sampling.check_kernel(takes_kernel)?;
+        self.files.targets()
     }
 
     /// Renders and writes the image; returns it if it is to be compared.
@@ -248,37 +193,9 @@ impl Render {
         Ok((done, None))
     }
 
-    /// The image to hold the rendering against and its account, made first so that a bad one is
-    /// refused before anything is written.
-    fn reference(
-        &self,
-        subject: &Subject,
-        sampling: &Sampling,
-        global: &Global,
-    ) -> Outcome<Option<(Image, Value)>> {
-        let Some(reference) = &self.reference else { return Ok(None) };
-        let normalization = sampling.normalization().unwrap_or_default();
-        reference.image(subject, self.sampling.kernel(), normalization, global).map(Some)
-    }
-
-    fn write_error(&self, image: &Image, reference: &Image, target: &Target<'_>) -> Outcome {
-        let picture = match target.format {
-            ImageFormat::Png => error_picture(image, reference, self.error_gain),
-            _ => difference(image, reference),
-        };
-        target.write(&picture.map_err(Failure::usage)?)
-    }
-
-    fn account(
-        &self,
-        subject: &Subject,
-        sampling: &Sampling,
-        done: &Done,
-        compared: Option<&Compared<'_>>,
-        pattern: &Value,
-    ) -> Value {
+    /// All that decides the image.
+    fn settings(&self, subject: &Subject, sampling: &Sampling, pattern: &Value) -> Value {
         let (frame, window) = (subject.frame, subject.frame.window());
-        let Done { stats, fit, .. } = done;
         let (reconstruct, weighted) = match sampling {
             Sampling::Tiled(tiled) => (Some("convolution"), tiled.pattern.is_weighted()),
             Sampling::Fitted(fitted) => (Some(fitted.name()), fitted.pattern.is_weighted()),
@@ -286,54 +203,64 @@ impl Render {
             Sampling::Periodic(_) => (None, false),
         };
         let normalization = sampling.normalization();
-        let mut account = json!({
+        let mut settings = json!({
             "scene": self.scene.scene,
+            "scene_options": self.scene.given(),
             "width": window.width,
             "height": window.height,
             "image": {"width": frame.width(), "height": frame.height(), "x": window.x, "y": window.y},
             "channels": subject.scene.channels().count(),
             "pattern": pattern,
+            "seed": self.sampling.seed_taken(pattern),
+            "vary_tiles": reconstruct.map(|_| self.sampling.variation_name()),
             "spp": sampling.samples_per_pixel(),
             "reconstruct": reconstruct,
             "kernel": reconstruct.map(|_| self.sampling.kernel().name()),
             "weights": reconstruct.map(|_| if weighted { "voronoi" } else { "equal" }),
-            "normalize": normalization.map(|how| match how {
-                Normalization::Density => "density",
-                Normalization::None => "none",
-            }),
-            "samples": stats.samples,
-            "samples_skipped": stats.skipped(),
-            "samples_evaluated": stats.evaluated,
-            "references_evaluated": stats.references,
-            "empty_pixels": stats.empty_pixels,
-            "reference": compared.map(|compared| compared.reference),
-            "mse": compared.map(|compared| compared.mse),
-            // Equal images have no finite PSNR: null.
-            "psnr": compared.map(|compared| peak_signal_to_noise(compared.mse)),
+            "normalize": normalization.map(normalization_name),
         });
-        let more = match (sampling, &done.adaptive) {
-            (Sampling::Adaptive(adaptive), Some(stats)) => {
-                Some(adaptive.account(stats, compared.map(|compared| compared.mse)))
-            }
-            _ => fit.as_ref().map(reconstruction::account),
-        };
-        if let (Some(account), Some(Value::Object(more))) = (account.as_object_mut(), more) {
-            account.extend(more);
+        match sampling {
+            Sampling::Fitted(fitted) => extend(&mut settings, fitted.settings()),
+            Sampling::Adaptive(adaptive) => extend(&mut settings, adaptive.settings()),
+            Sampling::Tiled(_) | Sampling::Periodic(_) => {}
         }
-        account
+        settings
     }
 }
 
-fn target(path: &Path, format: Option<ImageFormat>, png: PngOptions) -> Outcome<Target<'_>> {
-    let format = match format {
-        Some(format) => format,
-        None if path == Path::new("-") => {
-            return Err(Failure::misuse("an image on standard output needs --format"));
-        }
-        None => ImageFormat::from_path(path)?,
-    };
-    if path != Path::new("-") {
-        output::check_folder(path)?;
+fn normalization_name(normalization: Normalization) -> &'static str {
+    match normalization {
+        Normalization::Density => "density",
+        Normalization::None => "none",
     }
-    Ok(Target { path, format, png })
+}
+
+/// What came of it.
+fn results(sampling: &Sampling, done: &Done, compared: Option<&Compared<'_>>) -> Value {
+    let Done { stats, fit, .. } = done;
+    let mut results = json!({
+        "samples": stats.samples,
+        "samples_skipped": stats.skipped(),
+        "samples_evaluated": stats.evaluated,
+        "references_evaluated": stats.references,
+        "empty_pixels": stats.empty_pixels,
+        "reference": compared.map(|compared| compared.reference),
+        "mse": compared.map(|compared| compared.mse),
+        // Equal images have no finite PSNR: null.
+        "psnr": compared.map(|compared| peak_signal_to_noise(compared.mse)),
+    });
+    if let (Sampling::Adaptive(_), Some(stats)) = (sampling, &done.adaptive) {
+        extend(&mut results, adaptive::account(stats, compared.map(|compared| compared.mse)));
+    }
+    if let Some(fit) = fit {
+        extend(&mut results, reconstruction::account(fit));
+    }
+    results
+}
+
+/// Adds the keys of one object to another.
+fn extend(account: &mut Value, more: Value) {
+    if let (Some(account), Value::Object(more)) = (account.as_object_mut(), more) {
+        account.extend(more);
+    }
 }

@@ -80,6 +80,13 @@ impl ReconstructionArgs {
             iterations: self.iterations.map_or(usual.iterations, |count| count as usize),
             tolerance,
         };
+        if let Some(band) = self.band
+            && !(band > 0.0 && band.is_finite())
+        {
+            return Err(Failure::misuse(format!(
+                "--band {band}: a band is a positive number of cycles per pixel"
+            )));
+        }
         let border = match self.border {
             Some(Continued::Periodic) => Border::Periodic,
             Some(Continued::Fade) | None => Border::Fade,
@@ -148,6 +155,20 @@ impl BandLimited {
         let method = self.name();
         renderer.image(observer).map_err(|error| {
             Failure::usage(anyhow!(error).context(format!("--reconstruct {method}")))
+        })
+    }
+
+    /// What the account has beside of what was asked for.
+    pub(super) fn settings(&self) -> Value {
+        let BandLimitedOptions { band, border, stopping, .. } = self.options;
+        json!({
+            "band": band,
+            "border": match border {
+                Border::Fade => "fade",
+                Border::Periodic => "periodic",
+            },
+            "most_iterations": stopping.iterations,
+            "tolerance": stopping.tolerance,
         })
     }
 

@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 use anyhow::anyhow;
-use bn_core::{Seed, Unobserved};
+use bn_core::{Observer, Seed, Unobserved};
 use bn_render::{Image, Kernel, Normalization, Pattern, exact_convolution};
 use bn_samplers::Sampler;
 use serde_json::{Value, json};
 
 use super::super::Global;
-use super::collect;
 use super::sampling::Tiled;
 use super::scene::Subject;
+use super::{collect, normalization_name};
 use crate::{Failure, Outcome, image_file};
 
 /// Where the reference comes from.
@@ -41,19 +41,26 @@ const TOLERANCE: f64 = 1e-6;
 /// Points of the hexagonal lattice.
 const LATTICE: usize = 4096;
 
+/// A reference that can be made, as far as that can be told before any work.
+pub(super) enum Prepared {
+    Exact,
+    Hexagonal(Pattern),
+    File(Image, Value),
+}
+
 impl Reference {
-    /// The image and its account.
-    pub(super) fn image(
-        &self,
-        subject: &Subject,
-        kernel: &'static dyn Kernel,
-        normalization: Normalization,
-        global: &Global,
-    ) -> Outcome<(Image, Value)> {
+    /// Whether it is made through the kernel.
+    pub(super) fn takes_kernel(&self) -> bool {
+        !matches!(self, Self::File(_))
+    }
+
+    /// Reads what is to be read, and refuses what can't be a reference of the subject.
+    pub(super) fn prepared(&self, subject: &Subject) -> Outcome<Prepared> {
+        let (window, channels) = (subject.frame.window(), subject.scene.channels());
+        Image::check_size(window.width, window.height, channels).map_err(Failure::usage)?;
         match self {
             Self::File(path) => {
                 let image = image_file::read(path, None)?;
-                let (window, channels) = (subject.frame.window(), subject.scene.channels());
                 let (got, want) = (
                     (image.width(), image.height(), image.channels().count()),
                     (window.width, window.height, channels.count()),
@@ -70,8 +77,30 @@ impl Reference {
                         want.2
                     )));
                 }
-                Ok((image, json!({"file": path.display().to_string()})))
+                Ok(Prepared::File(image, json!({"file": path.display().to_string()})))
             }
+            Self::Exact => Ok(Prepared::Exact),
+            &Self::Hexagonal(spp) => {
+                let lattice = bn_samplers::Hexagonal.sample(LATTICE, Seed::new(1), &Unobserved);
+                let lattice = lattice.map_err(|error| Failure::failed(anyhow!(error)))?.points;
+                let pattern = Pattern::tiled(&lattice, spp).map_err(Failure::usage)?;
+                Ok(Prepared::Hexagonal(pattern))
+            }
+        }
+    }
+}
+
+impl Prepared {
+    /// The image, by this kernel and normalisation, and its account.
+    pub(super) fn image(
+        self,
+        subject: &Subject,
+        (kernel, normalization): (&'static dyn Kernel, Normalization),
+        global: &Global,
+        observer: &dyn Observer,
+    ) -> Outcome<(Image, Value)> {
+        match self {
+            Self::File(image, account) => Ok((image, account)),
             Self::Exact => {
                 let made = exact_convolution(&*subject.scene, kernel, &subject.frame, TOLERANCE)
                     .map_err(Failure::usage)?;
@@ -84,20 +113,25 @@ impl Reference {
                 }
                 let account = json!({
                     "exact": made.converged,
+                    "kernel": kernel.name(),
                     "change": made.change,
                     "samples_per_pixel": made.samples_per_pixel,
                 });
                 Ok((made.image, account))
             }
-            &Self::Hexagonal(spp) => {
-                let lattice = bn_samplers::Hexagonal.sample(LATTICE, Seed::new(1), &Unobserved);
-                let lattice = lattice.map_err(|error| Failure::failed(anyhow!(error)))?.points;
-                let pattern = Pattern::tiled(&lattice, spp).map_err(Failure::usage)?;
+            Self::Hexagonal(pattern) => {
+                let account = json!({
+                    "method": "hexagonal",
+                    "n": LATTICE,
+                    "spp": pattern.samples_per_pixel(),
+                    "kernel": kernel.name(),
+                    "normalize": normalization_name(normalization),
+                });
                 let tiled = Tiled::new(pattern, kernel, normalization);
                 let (image, _) = collect(subject, |rows| {
-                    tiled.render(&*subject.scene, &subject.frame, &Unobserved, rows)
+                    tiled.render(&*subject.scene, &subject.frame, observer, rows)
                 })?;
-                Ok((image, json!({"method": "hexagonal", "n": LATTICE, "spp": spp})))
+                Ok((image, account))
             }
         }
     }

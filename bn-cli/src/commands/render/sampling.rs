@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
-use bn_core::{Observer, PointSet, Seed};
+use bn_core::{DVec2, Observer, PointSet, Seed};
 use bn_render::{
     AdaptiveStats, BandLimitedStats, Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern,
     RenderError, RenderStats, Renderer, SUPERSAMPLING, Scene, Supersampling, TileVariation,
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use super::super::method_values::{given_values, only_set};
 use super::adaptive::{self, Adaptive, AdaptiveArgs};
 use super::reconstruction::{BandLimited, ReconstructionArgs};
-use super::scene::Subject;
+use super::scene::{Subject, word};
 use crate::image_file::Rows;
 use crate::progress_bar::Bar;
 use crate::{Failure, Outcome};
@@ -31,10 +31,10 @@ pub(super) struct SamplingArgs {
     /// Samples per pixel; n points fill a tile of sqrt(n/spp) pixels a side
     #[arg(long, value_name = "SPP", default_value = "4", allow_negative_numbers = true)]
     spp: f64,
-    /// Reconstruction kernel
-    #[arg(long, value_name = "KERNEL", default_value = "lanczos2",
+    /// Reconstruction kernel, of references too (default: lanczos2)
+    #[arg(long, value_name = "KERNEL",
           value_parser = PossibleValuesParser::new(KERNELS.iter().map(|kernel| kernel.name())))]
-    kernel: String,
+    kernel: Option<String>,
     /// Divide by the kernel's weights that met samples, or by what they are on average (default:
     /// density)
     #[arg(long, value_name = "HOW")]
@@ -42,9 +42,9 @@ pub(super) struct SamplingArgs {
     /// Points of a method's pattern (default: 4096)
     #[arg(short, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     n: Option<u32>,
-    /// Seed of a method's pattern and of tiles that vary
-    #[arg(short, long, value_name = "SEED", default_value = "1")]
-    seed: u64,
+    /// Seed of a method's pattern, of tiles that vary and of adaptive sampling (default: 1)
+    #[arg(short, long, value_name = "SEED")]
+    seed: Option<u64>,
     /// An option of the method, as `bn generate METHOD --help` has them; may be repeated
     #[arg(short = 'O', long = "option", value_name = "NAME=VALUE")]
     options: Vec<String>,
@@ -54,7 +54,7 @@ pub(super) struct SamplingArgs {
     /// Instead of a tiled pattern and a kernel: the same weighted samples for every pixel, one of the
     /// sets below or a text file of lines `x y weight` (offsets from the pixel's centre)
     #[arg(long, value_name = "SET|FILE",
-          conflicts_with_all = ["pattern", "spp", "normalize", "n", "options", "vary_tiles"])]
+          conflicts_with_all = ["pattern", "spp", "normalize", "n", "seed", "options", "vary_tiles"])]
     supersampling: Option<String>,
     #[command(flatten)]
     reconstruction: ReconstructionArgs,
@@ -68,7 +68,7 @@ enum Normalize {
     None,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Vary {
     None,
     Turn,
@@ -108,7 +108,38 @@ pub(super) struct Tiled {
 impl SamplingArgs {
     /// The kernel, which the reference uses too.
     pub(super) fn kernel(&self) -> &'static dyn Kernel {
-        bn_render::kernel(&self.kernel).expect("the parser lets kernels pass only")
+        let name = self.kernel.as_deref().unwrap_or("lanczos2");
+        bn_render::kernel(name).expect("the parser lets kernels pass only")
+    }
+
+    /// Refuses a kernel where nothing is made through it.
+    pub(super) fn check_kernel(&self, reference_takes_it: bool) -> Outcome {
+        if self.supersampling.is_some() && self.kernel.is_some() && !reference_takes_it {
+            return Err(Failure::misuse(
+                "--kernel concerns patterns, and references other than files: --supersampling has \
+                 no use for it",
+            ));
+        }
+        Ok(())
+    }
+
+    /// How tiles vary, as typed.
+    pub(super) fn variation_name(&self) -> Value {
+        word(&self.vary_tiles)
+    }
+
+    /// The seed, where something hangs on it; `pattern` is the pattern's account.
+    pub(super) fn seed_taken(&self, pattern: &Value) -> Option<u64> {
+        (pattern.get("method").is_some() || self.takes_seed()).then(|| self.seed())
+    }
+
+    fn seed(&self) -> u64 {
+        self.seed.unwrap_or(1)
+    }
+
+    /// Whether the seed decides more than a method's points.
+    fn takes_seed(&self) -> bool {
+        self.vary_tiles != Vary::None || self.adaptive.is_wanted()
     }
 
     /// The sampling and its account.
@@ -128,7 +159,7 @@ impl SamplingArgs {
             });
             return Ok((Sampling::Periodic(pattern), account));
         }
-        if self.reconstruction.by_voronoi() && !matches!(self.vary_tiles, Vary::None) {
+        if self.reconstruction.by_voronoi() && self.vary_tiles != Vary::None {
             return Err(Failure::misuse(
                 "tiles that vary cut through Voronoi cells: --vary-tiles needs --weights equal",
             ));
@@ -136,6 +167,9 @@ impl SamplingArgs {
         if fitted.is_some() && self.normalize.is_some() {
             return Err(Failure::misuse("--normalize concerns --reconstruct convolution only"));
         }
+        // Rates are refused whatever the set.
+        let point = PointSet::new(vec![DVec2::ZERO]).map_err(Failure::failed)?;
+        Pattern::tiled(&point, self.spp).map_err(Failure::usage)?;
         self.adaptive.check(self.spp)?;
         if self.adaptive.is_wanted() && fitted.is_some() {
             return Err(Failure::misuse("--adaptive goes with --reconstruct convolution only"));
@@ -182,12 +216,12 @@ impl SamplingArgs {
 
     /// The seed of what sets tiles apart, unlike that of any set.
     fn tile_seed(&self) -> Seed {
-        Seed::new(self.seed).for_set(u32::MAX)
+        Seed::new(self.seed()).for_set(u32::MAX)
     }
 
     /// The seed of the shifts of an adaptive pattern's layers.
     fn layer_seed(&self) -> Seed {
-        Seed::new(self.seed).for_set(u32::MAX - 1)
+        Seed::new(self.seed()).for_set(u32::MAX - 1)
     }
 
     fn generated(&self, method: &'static Method, bar: &Bar) -> Outcome<(PointSet, Value)> {
@@ -201,13 +235,13 @@ impl SamplingArgs {
         let sampler =
             method.with_values(given_values(method, &options)?).map_err(Failure::usage)?;
         let n = self.n.unwrap_or(4096);
-        let sample = sampler.sample(n as usize, Seed::new(self.seed), bar).map_err(|error| {
+        let sample = sampler.sample(n as usize, Seed::new(self.seed()), bar).map_err(|error| {
             let usage = error.is_usage();
             let error = anyhow!(error).context(method.name);
             if usage { Failure::usage(error) } else { Failure::failed(error) }
         })?;
         let account = json!({
-            "method": method.name, "n": sample.points.len(), "seed": self.seed, "options": self.options,
+            "method": method.name, "n": sample.points.len(), "seed": self.seed(), "options": self.options,
         });
         Ok((sample.points, account))
     }
@@ -220,6 +254,11 @@ impl SamplingArgs {
         if self.n.is_some() || !self.options.is_empty() {
             return Err(Failure::misuse(format!(
                 "-n and --option belong to methods; {name} is a file of points"
+            )));
+        }
+        if self.seed.is_some() && !self.takes_seed() {
+            return Err(Failure::misuse(format!(
+                "--seed belongs to methods, --vary-tiles and --adaptive; {name} is a file of points"
             )));
         }
         only_set(path)

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use bn_render::{Encoding, Frame, Interpolation, Picture, SCENES, Scene, SceneOptions, Window};
 use clap::{Args, ValueEnum};
+use serde_json::{Map, Value, json};
 
+use crate::image_file::ImageFormat;
 use crate::{Failure, Outcome, image_file};
 
 #[derive(Debug, Args)]
@@ -104,7 +106,9 @@ impl SceneArgs {
     pub(super) fn subject(&self) -> Outcome<Subject> {
         let entry = SCENES.iter().find(|entry| entry.name == self.scene);
         let takes = entry.map_or(&["interpolation", "scene-encoding"][..], |entry| entry.options);
-        if let Some(name) = self.given().iter().find(|name| !takes.contains(name)) {
+        if let Some((name, _)) =
+            self.given().iter().find(|(name, _)| !takes.contains(&name.as_str()))
+        {
             return Err(Failure::misuse(format!("--{name} does not concern {}", self.scene)));
         }
         if entry.is_some() {
@@ -119,6 +123,12 @@ impl SceneArgs {
                 "there is no scene {:?}; there are {}, and image files (.png, .pfm, .exr)",
                 self.scene,
                 known.join(", ")
+            )));
+        }
+        if self.scene_encoding.is_some() && ImageFormat::from_path(path)? != ImageFormat::Png {
+            return Err(Failure::misuse(format!(
+                "--scene-encoding concerns .png only; {} holds light",
+                self.scene
             )));
         }
         let image = image_file::read(path, self.scene_encoding.map(Encoding::from))?;
@@ -136,12 +146,12 @@ impl SceneArgs {
         }
     }
 
-    /// The names of the options that were given and concern some scenes only.
-    fn given(&self) -> Vec<&'static str> {
-        let number = |name, value: Option<f64>| value.map(|_| name);
-        [
-            self.interpolation.map(|_| "interpolation"),
-            self.scene_encoding.map(|_| "scene-encoding"),
+    /// The options that were given and concern some scenes only.
+    pub(super) fn given(&self) -> Map<String, Value> {
+        let number = |name, value: Option<f64>| Some((name, json!(value?)));
+        let given = [
+            self.interpolation.map(|between| ("interpolation", word(&between))),
+            self.scene_encoding.map(|curve| ("scene-encoding", word(&curve))),
             number("frequency", self.frequency),
             number("cut-radius", self.cut_radius),
             number("angle", self.angle),
@@ -151,10 +161,8 @@ impl SceneArgs {
             number("contrast", self.contrast),
             number("horizon", self.horizon),
             number("squares", self.squares),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+        ];
+        given.into_iter().flatten().map(|(name, value)| (name.to_owned(), value)).collect()
     }
 
     fn options(&self) -> SceneOptions {
@@ -175,6 +183,11 @@ impl SceneArgs {
         set(|o| &mut o.squares, self.squares);
         options
     }
+}
+
+/// The word that was typed for a value.
+pub(super) fn word(value: &impl ValueEnum) -> Value {
+    json!(value.to_possible_value().map(|word| word.get_name().to_owned()))
 }
 
 fn numbers<const N: usize>(text: &str, separator: char) -> Option<[u32; N]> {
