@@ -4,8 +4,8 @@ use anyhow::anyhow;
 use bn_core::{Observer, PointSet};
 use bn_geometry::{Triangulation, voronoi_cells};
 use bn_render::{
-    BandLimitedMethod, BandLimitedOptions, BandLimitedRenderer, BandLimitedStats, Border, Image,
-    Kernel, LowPass, Pattern, Stopping,
+    BandLimitedError, BandLimitedMethod, BandLimitedOptions, BandLimitedRenderer, BandLimitedStats,
+    Border, Image, Kernel, LowPass, Pattern, Stopping,
 };
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -154,7 +154,9 @@ impl BandLimited {
         };
         let method = self.name();
         renderer.image(observer).map_err(|error| {
-            Failure::usage(anyhow!(error).context(format!("--reconstruct {method}")))
+            let is_usage = is_usage(&error);
+            let error = anyhow!(error).context(format!("--reconstruct {method}"));
+            if is_usage { Failure::usage(error) } else { Failure::failed(error) }
         })
     }
 
@@ -178,6 +180,14 @@ impl BandLimited {
             BandLimitedMethod::Pocs => "pocs",
         }
     }
+}
+
+/// Whether the request is at fault, not the run.
+fn is_usage(error: &BandLimitedError) -> bool {
+    !matches!(
+        error,
+        BandLimitedError::Cancelled | BandLimitedError::Transform(_) | BandLimitedError::Image(_)
+    )
 }
 
 /// Says where the iteration fell short.
@@ -209,4 +219,16 @@ pub(super) fn account(stats: &BandLimitedStats) -> Value {
         "coefficients": stats.convergence.first().map(|channel| channel.coefficients),
         "residuals": history,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_that_failed_is_no_misuse() {
+        assert!(is_usage(&BandLimitedError::NoSamples));
+        assert!(is_usage(&BandLimitedError::Band { band: 0.0 }));
+        assert!(!is_usage(&BandLimitedError::Cancelled));
+    }
 }
