@@ -103,7 +103,9 @@ impl Downsampling {
         for image in [&self.reference, &self.dense] {
             image.values().iter().for_each(|value| hasher.write_u32(value.to_bits()));
         }
-        sets.iter().for_each(|set| hash_points(set, &mut hasher));
+        for set in sets {
+            hash_points(set, &mut hasher);
+        }
         hasher.finish()
     }
 
