@@ -78,9 +78,14 @@ fn cccvt() {
     check("cccvt", [0.03, 0.04], 1.0);
 }
 
-/// P is met ten times better than by `force`; in g, where two ensembles of Lloyd's own differ by 0.024,
-/// `force`, which aims at g, stays a little nearer.
+/// The one model whose g `force` meets better, which aims at nothing else: 0.026 against 0.032, while
+/// P is met ten times better, 0.005 against 0.043. Steeper weights take g to 0.030 at twice the error of
+/// P, wider ranges and longer searches gain nothing: what is left are misplaced points in crystals
+/// that are all but perfect. Both are far below what sets of Lloyd's own differ by.
 #[test]
 fn lloyd() {
     check("lloyd", [0.01, 0.035], 1.3);
+    let lloyd = find("lloyd").expect("a method").with_options([]).expect("defaults");
+    let [p, g] = differences(&ensemble(&*lloyd, 0), &ensemble(&*lloyd, 300));
+    assert!(p > 0.09 && g > 0.09, "{p} {g}");
 }
