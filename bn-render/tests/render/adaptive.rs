@@ -324,6 +324,27 @@ fn pixels_without_samples_are_refined_or_told() {
     }
 }
 
+/// What is stated of the pixels that have samples doesn't fall because of those that have none.
+#[test]
+fn empty_pixels_hide_no_error() {
+    let frame = frame(96, 96);
+    let scene = ZonePlate::new(&frame, 0.5);
+    let exact = exact_convolution(&scene, kernel("box").expect("a kernel"), &frame, 1e-5);
+    let exact = exact.expect("small").image;
+    for rate in [1.0, 2.0, 4.0] {
+        let pattern = progressive(&random_set(4096, 1), rate, rate);
+        let (table, how) = (table("box"), Normalization::Density);
+        let renderer = AdaptiveRenderer::new(&scene, &pattern, &table, how, &frame, 0.1);
+        let (image, stats) = renderer.image().expect("small");
+        let truth = mean_square_error(&image, &exact).expect("same shape").sqrt();
+        println!("{rate} spp: true {truth:.4}, {stats:?}");
+        assert!(stats.empty_pixels > 0 && stats.blocks_unresolved > 0, "{stats:?}");
+        let ratio = stats.error_estimated / truth;
+        assert!((0.6..2.0).contains(&ratio), "{rate} spp: {truth} {stats:?}");
+        assert!(stats.error_worst >= stats.error_estimated, "{stats:?}");
+    }
+}
+
 #[test]
 fn knowing_constants_changes_no_bit() {
     let frame = frame(140, 60);

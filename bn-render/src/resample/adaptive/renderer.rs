@@ -23,8 +23,10 @@ use crate::{Frame, Image, KernelTable, Scene};
 ///
 /// *Estimate.* A block's samples are those of its last layer. The layer before is a quarter as dense
 /// and errs independently of it, having its own random shift; 1/√5 of the difference of both is the
-/// error of the last, just so where errors fall as those of independent samples, and an upper bound
-/// where they fall faster: up to twice the true error for smooth scenes under well-spread patterns.
+/// error of the last, just so where errors fall as those of independent samples (from some 16 samples
+/// per pixel in that layer on, where normalisation by density is nearly linear; below, a few pixels
+/// whose weights nearly cancel can be worse than stated), and an upper bound where they fall faster:
+/// up to twice the true error for smooth scenes under well-spread patterns.
 /// Choosing where to stop by the same estimate makes it a little low, by some percent. Two things it
 /// can't see: what both layers miss (a detail between all samples of a window), and, for lattices,
 /// errors that are the same all over the image, of which one pair of shifts is one draw only (sets
@@ -62,13 +64,13 @@ pub struct AdaptiveStats {
     /// Blocks whose window is estimated above the wanted error with all samples they may have.
     pub blocks_unresolved: u64,
     /// Pixels with Σ r = 0 under [`Normalization::Density`]: they take the scene's value at their
-    /// tile's centre, and are not part of the estimates.
+    /// tile's centre, and are not part of the estimates; their windows are refined as far as may be.
     pub empty_pixels: u64,
     /// Pixels of all tiles that meet the window.
     pub pixels: u64,
-    /// The estimated root mean square error of these pixels.
+    /// The estimated root mean square error of those of them that two layers reach; NaN if none.
     pub error_estimated: f64,
-    /// That of the worst window.
+    /// That of the worst window that has such pixels.
     pub error_worst: f64,
 }
 
@@ -227,6 +229,7 @@ impl Sum {
         sum.refined += one.refined;
         sum.unresolved += one.unresolved;
         sum.empty += one.empty;
+        sum.estimated += one.estimated;
         sum.square += one.square;
         sum.worst_square = sum.worst_square.max(one.worst_square);
         self.pixels += tile.rates.len() as u64;
@@ -244,7 +247,7 @@ impl Sum {
             blocks_unresolved: sum.unresolved,
             empty_pixels: sum.empty,
             pixels: self.pixels,
-            error_estimated: (sum.square / self.pixels as f64).sqrt(),
+            error_estimated: (sum.square / sum.estimated as f64).sqrt(),
             error_worst: sum.worst_square.sqrt(),
         }
     }

@@ -36,7 +36,8 @@ pub(super) struct TileAccount {
     pub(super) refined: u64,
     pub(super) unresolved: u64,
     pub(super) empty: u64,
-    /// Sum of the estimated squared errors of the pixels, and the largest mean of a window.
+    /// Pixels whose error is estimated, the sum of their squares, and the largest mean of a window.
+    pub(super) estimated: u64,
     pub(super) square: f64,
     pub(super) worst_square: f64,
 }
@@ -49,9 +50,44 @@ pub(super) struct TileScratch {
     /// less them.
     total: Vec<f64>,
     gap: Vec<f64>,
-    /// Estimated squared errors of the patches' pixels: their sums and numbers.
-    squares: Vec<(f64, u32)>,
-    windows: Vec<f64>,
+    squares: Vec<Squares>,
+    windows: Vec<Squares>,
+}
+
+/// The estimated squared errors of some pixels.
+#[derive(Clone, Copy, Default)]
+struct Squares {
+    sum: f64,
+    /// Pixels that have an estimate.
+    estimated: u32,
+    /// Pixels that no sample reaches.
+    empty: u32,
+}
+
+impl Squares {
+    fn add(&mut self, other: Self) {
+        self.sum += other.sum;
+        self.estimated += other.estimated;
+        self.empty += other.empty;
+    }
+
+    /// NaN if nothing is known.
+    fn mean(self) -> f64 {
+        self.sum / f64::from(self.estimated)
+    }
+
+    fn is_within(self, most: f64) -> bool {
+        self.empty == 0 && self.mean() <= most
+    }
+}
+
+/// What is known of a pixel's error.
+enum Known {
+    Error(f64),
+    /// No sample of the older layer reaches it.
+    Nothing,
+    /// No sample of the last layer reaches it.
+    Empty,
 }
 
 impl Task<'_> {
@@ -78,9 +114,7 @@ impl Task<'_> {
             judge_windows(axes, self.window_arm(), scratch);
             let mut refined = false;
             for (patch, &window) in scratch.windows.iter().enumerate() {
-                // NaN is not good enough either.
-                let good = window <= self.most_square;
-                if !good && scratch.patches.level(patch) < last {
+                if !window.is_within(self.most_square) && scratch.patches.level(patch) < last {
                     scratch.patches.refine(self.source, axes, patch);
                     refined = true;
                 }
@@ -109,6 +143,7 @@ impl Task<'_> {
                 samples,
                 pilot: samples,
                 blocks: blocks[0] * blocks[1],
+                estimated: pixels as u64,
                 ..TileAccount::default()
             },
         }
@@ -167,25 +202,27 @@ impl Task<'_> {
         let (width, area) = (axes[0].pixels, axes[0].pixels * axes[1].pixels);
         let channels = self.source.scene.channels().count();
         scratch.squares.clear();
-        scratch.squares.resize(axes[0].patches * axes[1].patches, (0.0, 0));
+        scratch.squares.resize(axes[0].patches * axes[1].patches, Squares::default());
         finished.values.clear();
         finished.account.empty = 0;
         for pixel in 0..area {
             let weights = (scratch.total[pixel], scratch.gap[pixel]);
-            let mut square = 0.0;
+            let mut squares = Squares { estimated: 1, ..Squares::default() };
             for (c, &reference) in reference[..channels].iter().enumerate() {
                 let at = (1 + c) * area + pixel;
                 let values = (scratch.total[at], scratch.gap[at]);
-                let (value, error) = self.pixel(weights, values, reference);
+                let (value, known) = self.pixel(weights, values, reference);
                 finished.values.push(value as f32);
-                square += error * error;
+                match known {
+                    Known::Error(error) => squares.sum += error * error / channels as f64,
+                    Known::Nothing => squares = Squares::default(),
+                    Known::Empty => squares = Squares { empty: 1, ..Squares::default() },
+                }
             }
-            finished.account.empty += u64::from(square.is_nan());
+            finished.account.empty += u64::from(squares.empty);
             let (row, column) = (pixel / width, pixel % width);
             let patch = axes[1].patch_at(row) * axes[0].patches + axes[0].patch_at(column);
-            let (sum, count) = &mut scratch.squares[patch];
-            *sum += square / channels as f64;
-            *count += 1;
+            scratch.squares[patch].add(squares);
         }
     }
 
@@ -196,21 +233,27 @@ impl Task<'_> {
     /// of both variances. The older layer's is at least g times the newer's, which is g times as
     /// dense, if errors fall at least as fast as those of independent samples; hence (a − b)²/(1 + g)
     /// is at least the variance of b, and just that for independent samples. Under normalisation by
-    /// density a and b are those of the ratio to first order.
+    /// density a and b are those of the ratio to first order, about a weight of at least half the
+    /// expected one: where kernels with negative lobes leave hardly any, first order means nothing.
     #[inline]
-    fn pixel(&self, weight: (f64, f64), value: (f64, f64), reference: f64) -> (f64, f64) {
+    fn pixel(&self, weight: (f64, f64), value: (f64, f64), reference: f64) -> (f64, Known) {
         let scale = 1.0 / (1.0 + ProgressivePattern::GROWTH).sqrt();
+        let expected = self.source.table.integral().powi(2);
         match self.normalization {
-            Normalization::Density if weight.0 == 0.0 => (reference, f64::NAN),
+            Normalization::Density if weight.0 == 0.0 => (reference, Known::Empty),
             Normalization::Density => {
-                let relative = value.0 / weight.0;
-                let gap = (value.1 - relative * weight.1) / weight.0;
-                (reference + relative, scale * gap)
+                let color = reference + value.0 / weight.0;
+                if weight.0 + weight.1 == 0.0 {
+                    return (color, Known::Nothing);
+                }
+                let bounded = weight.0.abs().max(0.5 * expected);
+                let gap = (value.1 - value.0 / bounded * weight.1) / bounded;
+                (color, Known::Error(scale * gap))
             }
             Normalization::None => {
-                let expected = self.source.table.integral().powi(2);
                 let all = (value.0 + reference * weight.0) / expected;
-                (all, scale * (value.1 + reference * weight.1) / expected)
+                let gap = (value.1 + reference * weight.1) / expected;
+                (all, Known::Error(scale * gap))
             }
         }
     }
@@ -226,11 +269,10 @@ impl Task<'_> {
                 let window = scratch.windows[patch];
                 account.blocks += 1;
                 account.refined += u64::from(patches.level(patch) > 0);
-                account.unresolved += u64::from(window.is_nan() || window > self.most_square);
-                account.worst_square = account.worst_square.max(window);
-                let square = scratch.squares[patch].0;
-                // Of a pixel that nothing reaches nothing is known; it is counted apart.
-                account.square += if square.is_nan() { 0.0 } else { square };
+                account.unresolved += u64::from(!window.is_within(self.most_square));
+                account.worst_square = account.worst_square.max(window.mean());
+                account.estimated += u64::from(scratch.squares[patch].estimated);
+                account.square += scratch.squares[patch].sum;
             }
         }
     }
@@ -246,21 +288,20 @@ impl Task<'_> {
     }
 }
 
-/// The mean estimated squared error of the tile's pixels in the window around each patch.
+/// The estimated squared errors of the tile's pixels in the window around each patch.
 fn judge_windows(axes: [&Axis; 2], arm: usize, scratch: &mut TileScratch) {
     let (columns, rows) = (axes[0].patches, axes[1].patches);
     let around = |i: usize, count: usize| i.saturating_sub(arm)..(i + arm + 1).min(count);
     scratch.windows.clear();
     for row in 0..rows {
         for column in 0..columns {
-            let (mut sum, mut pixels) = (0.0, 0);
+            let mut window = Squares::default();
             for y in around(row, rows) {
-                for &(square, count) in &scratch.squares[y * columns..][around(column, columns)] {
-                    sum += square;
-                    pixels += count;
+                for &squares in &scratch.squares[y * columns..][around(column, columns)] {
+                    window.add(squares);
                 }
             }
-            scratch.windows.push(sum / f64::from(pixels));
+            scratch.windows.push(window);
         }
     }
 }
