@@ -2,7 +2,7 @@
 
 use bn_core::Observer;
 
-use super::convergence::{Convergence, Lanczos, Stop, Stopping};
+use super::convergence::{Convergence, Lanczos, ROUNDING, Stop, Stopping};
 use super::error::BandLimitedError;
 use super::fit::observe;
 use super::modes::Modes;
@@ -28,7 +28,7 @@ pub(super) fn solve(
     let mut history = Vec::new();
     let relative = |square: f64| if start > 0.0 { (square / start).sqrt() } else { 0.0 };
     let stop = loop {
-        if relative(rho) <= stopping.tolerance {
+        if relative(rho) <= stopping.tolerance.max(ROUNDING) {
             break Stop::Tolerance;
         }
         if history.len() == stopping.iterations {
@@ -54,9 +54,10 @@ pub(super) fn solve(
     // Updated residuals drift from the true one.
     toeplitz.apply(&a, &mut product);
     product.scale_and_add(-1.0, b);
+    let residual = relative(product.norm_squared());
     let convergence = Convergence {
-        stop,
-        residual: relative(product.norm_squared()),
+        stop: stop.confirmed(residual, stopping.tolerance),
+        residual,
         history,
         condition: lanczos.condition(),
         coefficients: b.degree().coefficients(),

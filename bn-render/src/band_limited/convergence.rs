@@ -28,7 +28,8 @@ pub enum Stop {
     Tolerance,
     /// All iterations were made.
     Iterations,
-    /// Nothing changes any more, to rounding.
+    /// Nothing changes any more, to rounding: a tolerance below some 1e-11, the transforms' error, is
+    /// not reached.
     Exhausted,
 }
 
@@ -51,6 +52,18 @@ pub struct Convergence {
     pub samples: usize,
 }
 
+/// Where the residual that an iteration updates means no more than that it is small.
+pub(super) const ROUNDING: f64 = 1e-13;
+
+impl Stop {
+    /// The same, judged by the residual as computed anew: updated ones drift, by less than this
+    /// leaves room for.
+    pub(super) fn confirmed(self, residual: f64, tolerance: f64) -> Self {
+        let is_reached = residual <= 1.01 * tolerance || residual == 0.0;
+        if self == Self::Tolerance && !is_reached { Self::Exhausted } else { self }
+    }
+}
+
 impl Convergence {
     /// Iterations made.
     pub fn iterations(&self) -> usize {
@@ -63,7 +76,7 @@ impl Convergence {
     }
 
     /// Whether there are fewer samples than coefficients: many polynomials fit, and the one given has
-    /// the least energy.
+    /// the least energy about the samples' weighted mean.
     pub fn is_underdetermined(&self) -> bool {
         self.samples < self.coefficients
     }

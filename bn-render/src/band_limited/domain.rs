@@ -40,8 +40,11 @@ pub(super) struct Domain {
 /// at 4 over its width, ⅙ cycle per pixel, and what lies beyond is below −92 dB.
 const FADE: f64 = 24.0;
 
-/// Most samples, and most places of a grid: at some 60 bytes each, 2 GB.
+/// Most samples, at some 160 bytes each 5 GB, and most places of a pixel grid.
 const MOST: f64 = (1_u64 << 25) as f64;
+
+/// Most places of a transform between samples and modes: at 16 bytes each, 2 GB.
+const MOST_PLACES: f64 = (1_u64 << 27) as f64;
 
 impl Domain {
     pub(super) fn new(
@@ -60,10 +63,11 @@ impl Domain {
         };
         let ((left, width), (top, height)) = (side(image.0), side(image.1));
         let places = (4.0 * band).max(2.0).powi(2) * width as f64 * height as f64;
-        check("places of a grid", places)?;
+        check("places of a grid", places, MOST)?;
         let degree = Degree { x: degree(band, width), y: degree(band, height) };
         let (columns, rows) = grid_size(degree);
-        check("places of a grid", columns as f64 * rows as f64)?;
+        check("places of a grid", columns as f64 * rows as f64, MOST)?;
+        check_degree(degree)?;
         Ok(Self {
             start: (left, top),
             width,
@@ -77,7 +81,7 @@ impl Domain {
     /// The rectangle of the image plane; an error if it holds too many samples.
     pub(super) fn rect(&self, pattern: &Pattern) -> Result<Rect, BandLimitedError> {
         let area = self.width as f64 * self.height as f64;
-        check("samples", area * pattern.samples_per_pixel())?;
+        check("samples", area * pattern.samples_per_pixel(), MOST)?;
         let (u, v) = (self.start.0 as f64, self.start.1 as f64);
         Ok(Rect::new(u, v, u + self.width as f64, v + self.height as f64))
     }
@@ -108,12 +112,13 @@ fn degree(band: f64, length: usize) -> usize {
     ((band * length as f64).ceil() as usize).saturating_sub(1)
 }
 
-fn check(what: &'static str, count: f64) -> Result<(), BandLimitedError> {
-    if count <= MOST {
-        Ok(())
-    } else {
-        Err(BandLimitedError::TooLarge { what, count, limit: MOST })
-    }
+/// Refuses degrees whose transforms don't fit. A frame's longer side counts for both.
+pub(super) fn check_degree(degree: Degree) -> Result<(), BandLimitedError> {
+    check("places of a transform", degree.transform_places(), MOST_PLACES)
+}
+
+fn check(what: &'static str, count: f64, limit: f64) -> Result<(), BandLimitedError> {
+    if count <= limit { Ok(()) } else { Err(BandLimitedError::TooLarge { what, count, limit }) }
 }
 
 /// 1 for x ≤ 0, 0 for x ≥ FADE; between, 1 less the integral of the four-term Blackman–Harris window
@@ -172,6 +177,16 @@ mod tests {
     fn sizes_beyond_memory_are_refused() {
         let large = Frame::new(1 << 20, 1 << 20).expect("a size");
         assert!(Domain::new(&large, Border::Fade, 2.0, 0.5).is_err());
+        // Small as areas, but transforms are as fine along both axes.
+        for (width, height) in [(20_000, 64), (64, 20_000), (64_000, 16)] {
+            let long = Frame::new(width, height).expect("a size");
+            for border in [Border::Fade, Border::Periodic] {
+                let refused = Domain::new(&long, border, 2.0, 0.5);
+                assert!(matches!(refused, Err(BandLimitedError::TooLarge { .. })), "{width}");
+            }
+        }
+        let photograph = Frame::new(1920, 1080).expect("a size");
+        assert!(Domain::new(&photograph, Border::Fade, 2.0, 0.5).is_ok());
         let small = Frame::new(64, 64).expect("a size");
         assert!(Domain::new(&small, Border::Periodic, 2.0, 1e9).is_err());
         assert!(

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use bn_core::{DVec2, Observer, Progress};
 
 use super::convergence::{Convergence, Stopping};
+use super::domain::check_degree;
 use super::error::BandLimitedError;
 use super::modes::{Degree, Modes};
 use super::polynomial::TrigonometricPolynomial;
@@ -44,8 +45,9 @@ impl BandLimitedFit {
     /// do, at the price of more iterations and of fits that follow clusters).
     ///
     /// # Errors
-    /// If a weight is negative or not finite, none is positive, or the degree is beyond what can be
-    /// transformed.
+    /// If a weight is negative or not finite, none is positive, or the degree is too large: transforms
+    /// take 16 bytes for each of up to 8.5 (2x + 1) K + 4.3 K² places, K the larger of x and y, and may
+    /// take 2 GB.
     ///
     /// # Panics
     /// If there isn't one weight a point.
@@ -54,6 +56,7 @@ impl BandLimitedFit {
         weights: &[f64],
         degree: Degree,
     ) -> Result<Self, BandLimitedError> {
+        check_degree(degree)?;
         Ok(Self { samples: Scattered::new(points, weights, degree)?, toeplitz: None })
     }
 
@@ -122,11 +125,11 @@ fn solved(
     solve: impl FnOnce(&mut Scattered, &[f64], &Modes) -> Result<(Modes, Convergence), BandLimitedError>,
 ) -> Result<(TrigonometricPolynomial, Convergence), BandLimitedError> {
     assert_eq!(values.len(), samples.len(), "one value a sample");
+    // The values themselves first: one that is no number would spoil the mean, and all differences.
+    finite(values)?;
     let constant = level(values, samples.weights());
     let mut relative: Vec<f64> = values.iter().map(|value| value - constant).collect();
-    if let Some(index) = relative.iter().position(|value| !value.is_finite()) {
-        return Err(BandLimitedError::Value { index });
-    }
+    finite(&relative)?;
     let scale = relative.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     if scale > 0.0 {
         for value in &mut relative {
@@ -142,6 +145,13 @@ fn solved(
     let (mut modes, convergence) = solve(samples, &relative, &b)?;
     modes.scale(scale);
     Ok((TrigonometricPolynomial { constant, modes }, convergence))
+}
+
+fn finite(values: &[f64]) -> Result<(), BandLimitedError> {
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(index) => Err(BandLimitedError::Value { index }),
+        None => Ok(()),
+    }
 }
 
 /// The weighted mean, as the first value and what the others differ from it: that of equal values is

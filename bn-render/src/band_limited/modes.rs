@@ -16,11 +16,21 @@ pub struct Degree {
 impl Degree {
     /// Number of real coefficients, (2x + 1)(2y + 1).
     pub fn coefficients(self) -> usize {
-        (2 * self.x + 1).saturating_mul(2 * self.y + 1)
+        let count = |most: usize| most.saturating_mul(2).saturating_add(1);
+        count(self.x).saturating_mul(count(self.y))
     }
 
     pub(super) fn doubled(self) -> Self {
         Self { x: 2 * self.x, y: 2 * self.y }
+    }
+
+    /// The most numbers that a transform between points and these modes, or twice as many along
+    /// each axis, holds at once: columns times the rows of a grid that is as fine along both axes,
+    /// at up to 2.13 times the Nyquist rate.
+    pub(super) fn transform_places(self) -> f64 {
+        let (x, most) = (self.x as f64, self.most() as f64);
+        let rows = 4.26 * most + 64.0;
+        ((2.0 * x + 1.0) * 2.0 * rows).max((most + 1.0) * rows)
     }
 
     pub(super) fn most(self) -> usize {

@@ -2,7 +2,7 @@
 
 use bn_core::Observer;
 
-use super::convergence::{Convergence, Stop, Stopping};
+use super::convergence::{Convergence, ROUNDING, Stop, Stopping};
 use super::error::BandLimitedError;
 use super::fit::observe;
 use super::modes::Modes;
@@ -35,7 +35,7 @@ pub(super) fn solve(
     let mut history = Vec::new();
     let relative = |square: f64| if start > 0.0 { (square / start).sqrt() } else { 0.0 };
     let stop = loop {
-        if relative(square) <= stopping.tolerance {
+        if relative(square) <= stopping.tolerance.max(ROUNDING) {
             break Stop::Tolerance;
         }
         if history.len() == stopping.iterations {
@@ -63,9 +63,10 @@ pub(super) fn solve(
         *r = value - p;
     }
     samples.sum_modes(&residuals, &mut correction);
+    let residual = relative(correction.norm_squared());
     let convergence = Convergence {
-        stop,
-        residual: relative(correction.norm_squared()),
+        stop: stop.confirmed(residual, stopping.tolerance),
+        residual,
         history,
         condition: None,
         coefficients: b.degree().coefficients(),

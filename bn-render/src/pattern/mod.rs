@@ -151,7 +151,8 @@ impl Pattern {
         self.for_each_tile(rect, |tile| self.append(rect, tile, list));
     }
 
-    /// The number of samples with `min ≤ (u, v) < max`; the cost grows with the border only.
+    /// The number of samples with `min ≤ (u, v) < max`; the cost is that of the samples
+    /// along its border, and a few ns for each tile.
     pub fn count_in(&self, rect: &Rect) -> u64 {
         let (mut count, mut list) = (0, SampleList::default());
         self.for_each_tile(rect, |tile| {

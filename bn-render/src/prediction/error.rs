@@ -16,8 +16,9 @@ use crate::{Kernel, PatternError};
 /// *Assumption*: the pattern is independent of the image. For a given set that means: the mean over
 /// all shifts of the pattern against the image. Of that mean [`Prediction::noise`] is exact to some
 /// 1e-11/s times the image's power if P is the set's own spectrum; beyond K, P counts as 1, which
-/// is wrong by at most the largest |P − 1| there times the part of the kernel's energy beyond K/L
-/// cycles per pixel. One image with one shift deviates by chance.
+/// is wrong by at most the largest |P − 1| there times the part of the kernel's energy beyond
+/// K/L − |f| cycles per pixel for power of the image at f: from |f| = K/L on, the prediction is that
+/// of white noise. One image with one shift deviates by chance.
 #[derive(Clone, Copy, Debug)]
 pub struct Prediction<'a> {
     pattern: &'a PatternPower,

@@ -74,6 +74,8 @@ impl ImageSpectrum {
     /// lies between the pixels (their interpolation) is not part of it, and edges where opposite
     /// borders don't fit add power along the axes.
     ///
+    /// Cost: O(m² log m) and some 30 m² bytes, m the longer side, whatever the shorter one is.
+    ///
     /// # Errors
     /// If a side of the image is above 2¹⁷ pixels.
     pub fn of_image(image: &Image, frame: &Frame) -> Result<Self, NufftError> {

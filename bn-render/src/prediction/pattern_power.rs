@@ -91,7 +91,7 @@ impl PatternPower {
     /// P(k), 1 beyond K; 0 at the mode 0.
     pub fn power(&self, kx: i64, ky: i64) -> f64 {
         let limit = self.max_frequency as i64;
-        if kx.abs() > limit || ky.abs() > limit {
+        if kx.unsigned_abs().max(ky.unsigned_abs()) > limit.unsigned_abs() {
             return 1.0;
         }
         let (kx, ky) = if kx < 0 { (-kx, -ky) } else { (kx, ky) };

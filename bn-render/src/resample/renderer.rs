@@ -84,7 +84,8 @@ pub struct Band<'a> {
 /// Pixel (i, j) has its centre at (i + ½, j + ½) and gathers the samples within the kernel's
 /// (square) support, samples outside the image included. Each sample is evaluated once. The result
 /// is the same to the bit for any number of threads, any window of the image and whether or not
-/// the scene tells where it is constant; memory holds a few bands of 32 rows, at most some 200 MB.
+/// the scene tells where it is constant. Memory holds a few bands of 32 rows, at most some 200 MB
+/// or, of very wide images, three bands of 8·(1 + channels)·(32 + 2·radius)·width bytes.
 ///
 /// Sums run in f64 relative to a reference value for each block of pixels, so that rounding stays
 /// near 1e-15 of the local contrast; weights carry the error of [`KernelTable`].
@@ -115,7 +116,7 @@ impl<'a> Renderer<'a> {
     /// Renders into memory.
     ///
     /// # Errors
-    /// If the image is larger than [`Image::MAX_SAMPLES`].
+    /// If the image is larger than [`Image::MAX_SAMPLES`], or the scene's values are not finite.
     pub fn image(&self) -> Result<(Image, RenderStats), RenderError> {
         let window = self.layout.window;
         Image::check_size(window.width, window.height, self.channels())?;

@@ -240,6 +240,32 @@ impl bn_core::Observer for Stopper {
     }
 }
 
+/// Tolerances that no residual can keep to are not called reached.
+#[test]
+fn what_is_told_as_reached_is_reached() {
+    let set = jittered_set(12, 1);
+    let areas = cell_areas(&set, 200);
+    let values: Vec<f64> =
+        set.points().iter().map(|p| libm::sin(TAU * (p.x + 2.0 * p.y))).collect();
+    let mut fit = BandLimitedFit::new(set.points().to_vec(), &areas, Degree { x: 3, y: 3 });
+    let fit = fit.as_mut().expect("small");
+    for tolerance in [0.0, 1e-20, 1e-14, 1e-9, 1e-6, 1e-3] {
+        let stopping = Stopping { iterations: 2000, tolerance };
+        let results =
+            [fit.act(&values, &stopping, &Unobserved), fit.pocs(&values, &stopping, &Unobserved)];
+        for result in results {
+            let told = result.expect("a fit").1;
+            assert!(told.iterations() < 2000, "{tolerance}: {told:?}");
+            assert_eq!(
+                told.converged(),
+                told.residual <= 1.01 * tolerance,
+                "{tolerance}: {told:?}"
+            );
+            assert!(told.converged() || tolerance < 1e-9, "{tolerance}: {told:?}");
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_fitted_is_refused() {
     let points = vec![DVec2::ZERO, DVec2::splat(0.5)];
@@ -247,13 +273,15 @@ fn what_cannot_be_fitted_is_refused() {
     let fit = |weights: &[f64], degree| BandLimitedFit::new(points.clone(), weights, degree);
     assert!(matches!(fit(&[1.0, -1.0], degree), Err(BandLimitedError::Weight { index: 1, .. })));
     assert!(matches!(fit(&[0.0, 0.0], degree), Err(BandLimitedError::NoSamples)));
-    let far = Degree { x: 1 << 20, y: 0 };
-    assert!(matches!(fit(&[1.0, 1.0], far), Err(BandLimitedError::Transform(_))));
+    for (x, y) in [(1 << 20, 0), (40_000, 0), (0, 40_000), (4000, 4000), (usize::MAX, usize::MAX)] {
+        let far = fit(&[1.0, 1.0], Degree { x, y });
+        assert!(matches!(far, Err(BandLimitedError::TooLarge { .. })), "{x}, {y}");
+    }
     assert!(matches!(BandLimitedFit::new(vec![], &[], degree), Err(BandLimitedError::NoSamples)));
     let mut good = fit(&[1.0, f64::MAX], degree).expect("weights");
     for bad in [f64::NAN, f64::INFINITY] {
         let refused = good.act(&[0.0, bad], &EXACTLY, &Unobserved);
-        assert!(matches!(refused, Err(BandLimitedError::Value { .. })));
+        assert!(matches!(refused, Err(BandLimitedError::Value { index: 1 })), "{refused:?}");
     }
     let mut even = fit(&[1.0, 1.0], degree).expect("weights");
     for stopped in

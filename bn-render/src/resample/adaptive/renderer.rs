@@ -106,7 +106,7 @@ impl<'a> AdaptiveRenderer<'a> {
     /// The image, held in memory.
     ///
     /// # Errors
-    /// If the image is larger than [`Image::MAX_SAMPLES`].
+    /// If the image is larger than [`Image::MAX_SAMPLES`], or the scene's values are not finite.
     pub fn image(&self) -> Result<(Image, AdaptiveStats), RenderError> {
         let (window, channels) = (self.frame.window(), self.task.source.scene.channels());
         Image::check_size(window.width, window.height, channels)?;
