@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use bn_core::{Observer, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -32,6 +33,13 @@ fn style(template: &str) -> ProgressStyle {
 }
 
 impl Bar {
+    /// The bar as a sign of life, with the time that has passed: for work that counts no steps.
+    pub(crate) fn working(&self, stage: String) {
+        self.bar.set_style(style("{spinner} {msg} {elapsed}"));
+        self.bar.set_message(stage);
+        self.bar.enable_steady_tick(Duration::from_millis(200));
+    }
+
     /// The bar as a counter of `total` pieces that finish in any order.
     pub(crate) fn counting(&self, stage: &'static str, total: u64) -> Counter<'_> {
         let counter = Counter { bar: self, stage, total, done: AtomicU64::new(0) };

@@ -63,7 +63,10 @@ pub enum FrameError {
         height: u32,
     },
     /// The window is empty or leaves the image.
-    #[error("the window {window:?} does not lie within the image of {width}×{height} pixels")]
+    #[error(
+        "a window of {}×{} pixels at ({}, {}) is empty or leaves the image of {width}×{height} pixels",
+        window.width, window.height, window.x, window.y
+    )]
     Window {
         /// The window asked for.
         window: Window,

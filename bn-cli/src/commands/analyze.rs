@@ -11,6 +11,7 @@ use super::Global;
 use crate::analysis::{
     Analysis, POWER_BELOW_LIMIT, SPECTRAL_LIMIT, Statistic, Summary, WINDOWED_LIMIT,
 };
+use crate::progress_bar::Bar;
 use crate::{Failure, Outcome, input, output};
 
 #[derive(Debug, Args)]
@@ -102,11 +103,15 @@ pub(super) fn run(args: &Analyze, global: &Global) -> Outcome {
         return write_curve(curve, args.method, &groups, path, global);
     }
     let mut summaries = Vec::new();
-    for group in groups {
+    let bar = Bar::new(global.quiet);
+    let count = groups.len();
+    for (i, group) in groups.into_iter().enumerate() {
+        bar.working(format!("measuring {} of {count}", i + 1));
         let analysis = args.analysis(&group.sets);
         let wanted = args.wanted(group.sets[0].len(), global);
         summaries.push(Summary::of(&analysis, &wanted, group.files));
     }
+    drop(bar);
     output::write_stdout(|w| {
         if args.json {
             let written = match &summaries[..] {

@@ -20,14 +20,14 @@ use crate::{Failure, Outcome, output, output_points};
 #[derive(Debug, Args)]
 struct Generate {
     /// Number of points
-    #[arg(short, value_name = "N", default_value = "4096",
+    #[arg(short, value_name = "N", allow_negative_numbers = true, default_value = "4096",
           value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     n: u32,
     /// Seed of the random numbers; the same seed gives the same bytes
-    #[arg(short, long, value_name = "SEED", default_value = "1")]
+    #[arg(short, long, value_name = "SEED", allow_negative_numbers = true, default_value = "1")]
     seed: u64,
     /// Number of sets, each from its own random numbers; set 0 is what a single set would be
-    #[arg(short = 'm', long, value_name = "K", default_value = "1",
+    #[arg(short = 'm', long, value_name = "K", allow_negative_numbers = true, default_value = "1",
           value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     sets: u32,
     /// File to write, `-` for standard output. Several sets go into one .dat, .npy or .json, or into

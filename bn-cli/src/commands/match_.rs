@@ -24,13 +24,14 @@ pub(super) struct Match {
     #[command(flatten)]
     target: TargetArgs,
     /// Number of points (default: 4096, or as many as the models of --like or --start have)
-    #[arg(short, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(short, value_name = "N", allow_negative_numbers = true,
+          value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     n: Option<u32>,
     /// Seed of the random numbers; the same seed gives the same bytes
-    #[arg(short, long, value_name = "SEED", default_value = "1")]
+    #[arg(short, long, value_name = "SEED", allow_negative_numbers = true, default_value = "1")]
     seed: u64,
     /// Number of sets, each from its own random numbers; with --start only annealing makes several
-    #[arg(short = 'm', long, value_name = "K", default_value = "1",
+    #[arg(short = 'm', long, value_name = "K", allow_negative_numbers = true, default_value = "1",
           value_parser = clap::value_parser!(u32).range(1..=100_000))]
     sets: u32,
     /// File to write, `-` for standard output; as in `bn generate`

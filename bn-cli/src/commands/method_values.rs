@@ -22,6 +22,7 @@ pub(super) fn option_argument(spec: &'static OptionSpec) -> Arg {
             .num_args(ValueRange::from(0..=1))
             .require_equals(true)
             .default_missing_value("true")
+            .value_name("true|false")
             .help(format!("{}{unit}", spec.help)),
         _ => argument
             .num_args(1)

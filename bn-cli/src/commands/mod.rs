@@ -97,7 +97,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Outcome {
         Some(("convert", matches)) => convert::run(&parsed(matches)?),
         Some(("completions", matches)) => completions::run(&parsed(matches)?),
         #[cfg(feature = "report")]
-        Some(("report", matches)) => report::run(&parsed(matches)?),
+        Some(("report", matches)) => report::run(&parsed(matches)?, &global),
         _ => unreachable!("clap requires one of the subcommands above"),
     }
 }

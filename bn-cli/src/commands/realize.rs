@@ -15,7 +15,8 @@ pub(super) struct Realize {
     #[arg(value_name = "FILE", conflicts_with_all = ["target", "like"])]
     file: Option<PathBuf>,
     /// Number of points, the density that frequencies refer to (default: 4096, or that of the points)
-    #[arg(short, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    #[arg(short, value_name = "N", allow_negative_numbers = true,
+          value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     n: Option<u32>,
     /// JSON on standard output
     #[arg(long)]

@@ -6,7 +6,9 @@ use anyhow::anyhow;
 use bn_core::io::Format;
 use clap::{Args, Command};
 
+use super::Global;
 use crate::analysis::{Analysis, SPECTRAL_LIMIT};
+use crate::progress_bar::Bar;
 use crate::{Failure, Outcome, input, output, report};
 
 #[derive(Debug, Args)]
@@ -51,8 +53,10 @@ enum Page {
     Html,
 }
 
-pub(super) fn run(args: &Report) -> Outcome {
+pub(super) fn run(args: &Report, global: &Global) -> Outcome {
     let page = page_format(&args.output)?;
+    // Before the points are read and measured.
+    output::check_folder(&args.output)?;
     if args.width.is_some() && !matches!(page, Page::Png) {
         return Err(Failure::misuse("--width belongs to a .png; other pages have no pixels"));
     }
@@ -74,6 +78,8 @@ pub(super) fn run(args: &Report) -> Outcome {
     }
     let names = args.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>();
     let title = args.title.clone().unwrap_or_else(|| heading(&names));
+    let bar = Bar::new(global.quiet);
+    bar.working("measuring and drawing".to_owned());
     let analysis = Analysis::of(&sets);
     let range = range(args.range, n)?;
     let frequency = (range * analysis.density().grid_nyquist()).ceil().max(1.0) as usize;
@@ -85,6 +91,7 @@ pub(super) fn run(args: &Report) -> Outcome {
         Page::Svg => report::to_svg(&data).map_err(drawn)?.into_bytes(),
         Page::Html => report::to_html(&data).map_err(drawn)?.into_bytes(),
     };
+    drop(bar);
     output::write_to(&args.output, |w| Ok(w.write_all(&bytes)?))
 }
 

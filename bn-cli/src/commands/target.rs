@@ -15,7 +15,8 @@ use crate::{Failure, Outcome, curve_file, input};
 pub(super) struct TargetArgs {
     /// `step`, `single-peak`, or a CSV file (`-`: standard input) with the header `nu,power` (cycles per unit),
     /// `nu_rel,power` (sqrt(n)/2), `r,g` (unit lengths) or `r_rel,g` (`d_hex`), as `bn analyze --curve`
-    /// writes it
+    /// writes it (of measured curves the noise counts too, and is hardly ever realizable: --like takes the
+    /// points themselves)
     #[arg(long, value_name = "TARGET", conflicts_with = "like")]
     target: Option<PathBuf>,
     /// Point files whose mean spectrum is the target

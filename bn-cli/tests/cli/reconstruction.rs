@@ -106,6 +106,9 @@ fn senseless_combinations_are_refused() {
         let n = if words.contains("halton") { "-n 64" } else { "" };
         folder.bn(&format!("render zone-plate {words} {n} -o a.png")).refused(2, &[said]);
     }
+    // Sizes are looked at before patterns are read.
+    let long = "render zone-plate --size 20000x64 --pattern nosuch.txt --reconstruct act -o a.png";
+    folder.bn(long).refused(2, &["smaller image"]);
     assert!(folder.names().is_empty());
     folder
         .bn("render zone-plate --size 20x20 --pattern halton -n 64 --reconstruct act \

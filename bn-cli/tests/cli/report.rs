@@ -26,5 +26,7 @@ fn pages_of_other_kinds_are_refused() {
     folder.bn("report s.txt -o page.pdf").refused(2, &["page.pdf", ".png"]);
     folder.bn("report s.txt -o page.png --range 0").refused(2, &["--range"]);
     folder.bn("report s.txt -o page.svg --width 500").refused(2, &["--width"]);
+    // Before any point is read.
+    folder.bn("report nosuch.txt -o nosuch/page.png").refused(1, &["nosuch/page.png", "folder"]);
     assert_eq!(folder.names(), ["s.txt"]);
 }

@@ -78,10 +78,14 @@ impl Domain {
         })
     }
 
+    /// An error if so many samples a pixel are too many.
+    pub(super) fn check_samples(&self, samples_per_pixel: f64) -> Result<(), BandLimitedError> {
+        check("samples", self.width as f64 * self.height as f64 * samples_per_pixel, MOST)
+    }
+
     /// The rectangle of the image plane; an error if it holds too many samples.
     pub(super) fn rect(&self, pattern: &Pattern) -> Result<Rect, BandLimitedError> {
-        let area = self.width as f64 * self.height as f64;
-        check("samples", area * pattern.samples_per_pixel(), MOST)?;
+        self.check_samples(pattern.samples_per_pixel())?;
         let (u, v) = (self.start.0 as f64, self.start.1 as f64);
         Ok(Rect::new(u, v, u + self.width as f64, v + self.height as f64))
     }

@@ -45,6 +45,33 @@ impl BandLimitedOptions {
         let root = samples_per_pixel.sqrt();
         (0.25 * root).max((root * std::f64::consts::FRAC_1_SQRT_2 * 0.5).min(0.5))
     }
+
+    /// Whether images of this frame can be reconstructed so, before any sample is taken.
+    ///
+    /// # Errors
+    /// If the band is not a positive number, or grids or samples don't fit into memory.
+    pub fn check(
+        &self,
+        frame: &Frame,
+        low_pass: LowPass<'_>,
+        samples_per_pixel: f64,
+    ) -> Result<(), BandLimitedError> {
+        self.domain(frame, low_pass, samples_per_pixel)?.0.check_samples(samples_per_pixel)
+    }
+
+    /// The rectangle to reconstruct on, and the band.
+    fn domain(
+        &self,
+        frame: &Frame,
+        low_pass: LowPass<'_>,
+        samples_per_pixel: f64,
+    ) -> Result<(Domain, f64), BandLimitedError> {
+        let band = self.band.unwrap_or_else(|| Self::usual_band(samples_per_pixel));
+        if !(band > 0.0 && band.is_finite()) {
+            return Err(BandLimitedError::Band { band });
+        }
+        Ok((Domain::new(frame, self.border, low_pass.reach(), band)?, band))
+    }
 }
 
 /// What was done for an image.
@@ -124,11 +151,7 @@ impl BandLimitedRenderer<'_> {
         let (window, channels) = (self.frame.window(), self.scene.channels());
         Image::check_size(window.width, window.height, channels)?;
         let rate = self.pattern.samples_per_pixel();
-        let band = self.options.band.unwrap_or_else(|| BandLimitedOptions::usual_band(rate));
-        if !(band > 0.0 && band.is_finite()) {
-            return Err(BandLimitedError::Band { band });
-        }
-        let domain = Domain::new(&self.frame, self.options.border, self.low_pass.reach(), band)?;
+        let (domain, band) = self.options.domain(&self.frame, self.low_pass, rate)?;
         let samples = Samples::taken(self, &domain)?;
         let points = samples.places.u().iter().zip(samples.places.v());
         let points = points.map(|(&u, &v)| domain.on_torus(u, v)).collect();

@@ -72,7 +72,9 @@ struct Measured {
 }
 
 fn table(spec: &TableSpec, context: &Context<'_>) -> Outcome<Table> {
+    let start = Instant::now();
     let test = Downsampling::new()?;
+    eprintln!("{:<24} rendered in {:.2} s", "references", start.elapsed().as_secs_f64());
     let contenders = contenders(context);
     let wanted: Vec<_> = contenders.iter().map(|c| (c.spec.clone(), c.most_sets)).collect();
     let sets = context.workbench.point_sets(&wanted)?;

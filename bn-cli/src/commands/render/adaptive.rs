@@ -27,7 +27,8 @@ pub(super) struct AdaptiveArgs {
         allow_negative_numbers = true
     )]
     adaptive: Option<f64>,
-    /// The most samples per pixel that a block may get
+    /// The most samples per pixel that a block may get; the last step of four that doesn't exceed it
+    /// is where refinement ends
     #[arg(
         long,
         value_name = "SPP",
@@ -96,6 +97,11 @@ impl Adaptive {
         self.pattern.samples_per_pixel(0)
     }
 
+    /// Samples per pixel, in all, of a block that is refined as far as may be.
+    fn last(&self) -> f64 {
+        self.pattern.samples_per_pixel(self.pattern.levels() - 1)
+    }
+
     /// Renders the subject's window, handing its rows over from the top.
     pub(super) fn render(
         &self,
@@ -127,8 +133,12 @@ impl Adaptive {
         ));
         if stats.blocks_unresolved > 0 {
             global.remark(format!(
-                "{} blocks are above an error of {} with the most samples that --max-spp {} allows",
-                stats.blocks_unresolved, self.error, self.most
+                "{} blocks are above an error of {} at {:.1} samples per pixel, the last step that \
+                 --max-spp {} allows",
+                stats.blocks_unresolved,
+                self.error,
+                self.last(),
+                self.most
             ));
         }
     }

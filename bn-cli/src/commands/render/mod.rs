@@ -77,7 +77,7 @@ pub(super) fn run(args: &Render, global: &Global) -> Outcome {
     let reference = reference.transpose()?;
     let bar = Bar::new(global.quiet);
     let start = Instant::now();
-    let (sampling, pattern) = args.sampling.sampling(&bar)?;
+    let (sampling, pattern) = args.sampling.sampling(&subject.frame, &bar)?;
     let pattern_seconds = start.elapsed().as_secs_f64();
     let settings = args.settings(&subject, &sampling, &pattern);
     targets.note(&settings);

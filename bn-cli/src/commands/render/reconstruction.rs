@@ -5,7 +5,7 @@ use bn_core::{Observer, PointSet};
 use bn_geometry::{Triangulation, voronoi_cells};
 use bn_render::{
     BandLimitedError, BandLimitedMethod, BandLimitedOptions, BandLimitedRenderer, BandLimitedStats,
-    Border, Image, Kernel, LowPass, Pattern, Stopping,
+    Border, Frame, Image, Kernel, LowPass, Pattern, Stopping,
 };
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -152,12 +152,7 @@ impl BandLimited {
             frame: subject.frame,
             options: self.options,
         };
-        let method = self.name();
-        renderer.image(observer).map_err(|error| {
-            let is_usage = is_usage(&error);
-            let error = anyhow!(error).context(format!("--reconstruct {method}"));
-            if is_usage { Failure::usage(error) } else { Failure::failed(error) }
-        })
+        renderer.image(observer).map_err(|error| failure(self.options.method, error))
     }
 
     /// What the account has beside of what was asked for.
@@ -175,11 +170,32 @@ impl BandLimited {
     }
 
     pub(super) fn name(&self) -> &'static str {
-        match self.options.method {
-            BandLimitedMethod::Act => "act",
-            BandLimitedMethod::Pocs => "pocs",
-        }
+        name_of(self.options.method)
     }
+}
+
+fn name_of(method: BandLimitedMethod) -> &'static str {
+    match method {
+        BandLimitedMethod::Act => "act",
+        BandLimitedMethod::Pocs => "pocs",
+    }
+}
+
+/// Refuses a frame, band or rate that can't be reconstructed, before any pattern is made.
+pub(super) fn check(
+    options: &BandLimitedOptions,
+    frame: &Frame,
+    kernel: &dyn Kernel,
+    samples_per_pixel: f64,
+) -> Outcome {
+    let checked = options.check(frame, LowPass::Kernel(kernel), samples_per_pixel);
+    checked.map_err(|error| failure(options.method, error))
+}
+
+fn failure(method: BandLimitedMethod, error: BandLimitedError) -> Failure {
+    let is_usage = is_usage(&error);
+    let error = anyhow!(error).context(format!("--reconstruct {}", name_of(method)));
+    if is_usage { Failure::usage(error) } else { Failure::failed(error) }
 }
 
 /// Whether the request is at fault, not the run.
@@ -195,7 +211,7 @@ pub(super) fn remark(stats: &BandLimitedStats, global: &Global) {
     if stats.convergence.iter().any(bn_render::Convergence::is_underdetermined) {
         global.remark(
             "there are fewer samples than the band needs: of all functions that fit, that of least \
-             energy was approached",
+             energy about their mean was approached",
         );
     }
     if !stats.converged() {

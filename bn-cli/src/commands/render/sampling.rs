@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use super::super::method_values::{given_values, only_set};
 use super::adaptive::{self, Adaptive, AdaptiveArgs};
-use super::reconstruction::{BandLimited, ReconstructionArgs};
+use super::reconstruction::{self, BandLimited, ReconstructionArgs};
 use super::scene::{Subject, word};
 use crate::image_file::Rows;
 use crate::progress_bar::Bar;
@@ -40,10 +40,11 @@ pub(super) struct SamplingArgs {
     #[arg(long, value_name = "HOW")]
     normalize: Option<Normalize>,
     /// Points of a method's pattern (default: 4096)
-    #[arg(short, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    #[arg(short, value_name = "N", allow_negative_numbers = true,
+          value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     n: Option<u32>,
     /// Seed of a method's pattern, of tiles that vary and of adaptive sampling (default: 1)
-    #[arg(short, long, value_name = "SEED")]
+    #[arg(short, long, value_name = "SEED", allow_negative_numbers = true)]
     seed: Option<u64>,
     /// An option of the method, as `bn generate METHOD --help` has them; may be repeated
     #[arg(short = 'O', long = "option", value_name = "NAME=VALUE")]
@@ -143,7 +144,7 @@ impl SamplingArgs {
     }
 
     /// The sampling and its account.
-    pub(super) fn sampling(&self, bar: &Bar) -> Outcome<(Sampling, Value)> {
+    pub(super) fn sampling(&self, frame: &Frame, bar: &Bar) -> Outcome<(Sampling, Value)> {
         let fitted = self.reconstruction.band_limited()?;
         if let Some(name) = &self.supersampling {
             if fitted.is_some() {
@@ -169,7 +170,8 @@ impl SamplingArgs {
         }
         // Rates are refused whatever the set.
         let point = PointSet::new(vec![DVec2::ZERO]).map_err(Failure::failed)?;
-        Pattern::tiled(&point, self.spp).map_err(Failure::usage)?;
+        Pattern::tiled(&point, self.spp)
+            .map_err(|error| Failure::misuse(format!("--spp: {error}")))?;
         self.adaptive.check(self.spp)?;
         if self.adaptive.is_wanted() && fitted.is_some() {
             return Err(Failure::misuse("--adaptive goes with --reconstruct convolution only"));
@@ -178,6 +180,9 @@ impl SamplingArgs {
             return Err(Failure::misuse(
                 "--adaptive weighs samples alike: --weights voronoi does not go with it",
             ));
+        }
+        if let Some(options) = &fitted {
+            reconstruction::check(options, frame, self.kernel(), self.spp)?;
         }
         let name = self.pattern.as_deref().unwrap_or_default();
         let (set, account) = match bn_samplers::find(name) {
