@@ -22,7 +22,7 @@ pub trait Kernel: Send + Sync {
     /// rely on smooth pieces in between.
     fn radius(&self) -> f64;
 
-    /// r(x); 0 outside the support.
+    /// r(x) = r(−x), save at jumps; 0 outside the support.
     fn value(&self, x: f64) -> f64;
 
     /// ∫ r(x) dx over the support, exact to rounding: what plain convolution divides by, squared.

@@ -17,8 +17,7 @@ use crate::{Kernel, PatternError};
 /// all shifts of the pattern against the image. Of that mean [`Prediction::noise`] is exact to some
 /// 1e-11/s times the image's power if P is the set's own spectrum; beyond K, P counts as 1, which
 /// is wrong by at most the largest |P − 1| there times the part of the kernel's energy beyond
-/// K/L − |f| cycles per pixel for power of the image at f: from |f| = K/L on, the prediction is that
-/// of white noise. One image with one shift deviates by chance.
+/// K/L − |f| cycles per pixel for power of the image at f; from |f| = K/L on, that says nothing. One image with one shift deviates by chance.
 #[derive(Clone, Copy, Debug)]
 pub struct Prediction<'a> {
     pattern: &'a PatternPower,

@@ -152,6 +152,8 @@ mod tests {
         assert_eq!(power.power(0, 0), 0.0);
         assert_eq!(power.power(13, 0), 1.0);
         assert_eq!(power.interpolated(DVec2::new(1e300, -1e300)), 1.0);
+        assert_eq!((power.power(0, i64::MIN), power.power(i64::MIN, 0)), (1.0, 1.0));
+        assert_eq!(power.interpolated(DVec2::new(0.0, -1e19)), 1.0);
         let hole = power.interpolated(DVec2::ZERO);
         assert_eq!(hole, 0.5 * (power.power(1, 0) + power.power(0, 1)));
         assert_eq!((power.points(), power.max_frequency()), (100, 12));

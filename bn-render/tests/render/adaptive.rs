@@ -324,6 +324,18 @@ fn pixels_without_samples_are_refined_or_told() {
     }
 }
 
+#[test]
+fn where_nothing_is_known_nothing_is_stated() {
+    let frame = frame(8, 8);
+    let pattern = progressive(&random_set(1, 3), 1.0 / 1024.0, 1.0 / 1024.0);
+    let (table, how) = (table("box"), Normalization::Density);
+    let scene = Silent(SphereScene::new(&frame, 1.0));
+    let renderer = AdaptiveRenderer::new(&scene, &pattern, &table, how, &frame, 0.1);
+    let stats = renderer.image().expect("small").1;
+    assert!(stats.empty_pixels >= 62 && stats.blocks_unresolved == 4, "{stats:?}");
+    assert!(stats.error_estimated.is_nan() && stats.error_worst.is_nan(), "{stats:?}");
+}
+
 /// What is stated of the pixels that have samples doesn't fall because of those that have none.
 #[test]
 fn empty_pixels_hide_no_error() {

@@ -70,7 +70,7 @@ pub struct AdaptiveStats {
     pub pixels: u64,
     /// The estimated root mean square error of those of them that two layers reach; NaN if none.
     pub error_estimated: f64,
-    /// That of the worst window that has such pixels.
+    /// That of the worst window that has such pixels; NaN if none has.
     pub error_worst: f64,
 }
 
@@ -248,7 +248,7 @@ impl Sum {
             empty_pixels: sum.empty,
             pixels: self.pixels,
             error_estimated: (sum.square / sum.estimated as f64).sqrt(),
-            error_worst: sum.worst_square.sqrt(),
+            error_worst: if sum.estimated > 0 { sum.worst_square.sqrt() } else { f64::NAN },
         }
     }
 }
