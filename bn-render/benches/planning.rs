@@ -1,15 +1,19 @@
 //! Adaptive sampling against uniform sampling of the same error, and what predictions cost.
 
+#[path = "../tests/render/common/silent.rs"]
+mod silent;
+
 use std::hint::black_box;
 
 use bn_core::{DVec2, PointSet, Seed, Unobserved};
 use bn_render::{
-    AdaptiveRenderer, Channels, Checkerboard, Frame, Image, ImageSpectrum, KernelTable,
-    Normalization, Pattern, PatternPower, PlaneWave, PlaneWaves, Prediction, ProgressivePattern,
-    Renderer, Scene, SphereScene, kernel,
+    AdaptiveRenderer, Checkerboard, Frame, Image, ImageSpectrum, KernelTable, Normalization,
+    Pattern, PatternPower, PlaneWave, PlaneWaves, Prediction, ProgressivePattern, Renderer, Scene,
+    SphereScene, kernel,
 };
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rand::RngExt;
+use silent::Silent;
 
 fn jittered(m: u32) -> PointSet {
     let mut rng = Seed::new(1).stream(0);
@@ -18,27 +22,17 @@ fn jittered(m: u32) -> PointSet {
     PointSet::wrapped(points.collect()).expect("valid points")
 }
 
-/// A scene that keeps what it knows to itself.
-struct Silent<S>(S);
-
-impl<S: Scene> Scene for Silent<S> {
-    fn channels(&self) -> Channels {
-        self.0.channels()
-    }
-    fn values(&self, u: &[f64], v: &[f64], out: &mut [f64]) {
-        self.0.values(u, v, out);
-    }
-}
-
 fn adaptive(c: &mut Criterion) {
     let frame = Frame::new(512, 512).expect("a size");
     let table = KernelTable::new(kernel("lanczos2").expect("a kernel"));
     let set = jittered(64);
     let progressive = ProgressivePattern::new(&set, 4.0, 1024.0, Seed::new(1)).expect("rates");
-    let board = Silent(Checkerboard::new(&frame, 0.5, 12.0, 0.5));
-    let sphere = Silent(SphereScene::new(&frame, 1.0));
+    let board = Checkerboard::new(&frame, 0.5, 12.0, 0.5);
+    let sphere = SphereScene::new(&frame, 1.0);
     let scenes: [(&str, &dyn Scene); 2] = [("half-constant", &board), ("sphere", &sphere)];
     for (name, scene) in scenes {
+        // What is known of constants would help both.
+        let scene = &Silent(scene);
         let mut group = c.benchmark_group(format!("adaptive-{name}"));
         group.sample_size(10);
         let how = Normalization::Density;

@@ -1,6 +1,6 @@
 //! Adaptive rendering: what it states, what it saves, and that nothing else depends on how it runs.
 
-use crate::common::{jittered_set, random_set};
+use crate::common::{Silent, jittered_set, random_set};
 use bn_core::{DVec2, PointSet, Seed, Unobserved};
 use bn_render::{
     AdaptiveRenderer, AdaptiveStats, Channels, Checkerboard, Constant, Frame, Image, KernelTable,
@@ -31,18 +31,6 @@ fn adaptive(
     let lanczos = table("lanczos2");
     let renderer = AdaptiveRenderer::new(scene, pattern, &lanczos, normalization, frame, error);
     renderer.image().expect("small")
-}
-
-/// A scene that keeps what it knows to itself.
-struct Silent<S>(S);
-
-impl<S: Scene> Scene for Silent<S> {
-    fn channels(&self) -> Channels {
-        self.0.channels()
-    }
-    fn values(&self, u: &[f64], v: &[f64], out: &mut [f64]) {
-        self.0.values(u, v, out);
-    }
 }
 
 /// A grey scene in three shades.
@@ -83,7 +71,7 @@ fn constants_need_no_more_than_the_pilot() {
     let pattern = progressive(&jittered_set(32, 1), 4.0, 64.0);
     for told in [true, false] {
         let constant = Constant::grey(0.3);
-        let scene: &dyn Scene = if told { &constant } else { &Silent(constant) };
+        let scene: &dyn Scene = if told { &constant } else { &Silent(&constant) };
         let (image, stats) = adaptive(scene, &frame, &pattern, Normalization::Density, 1e-6);
         assert!(image.values().iter().all(|&value| value == 0.3_f32));
         assert_eq!(stats.samples, stats.pilot_samples);
@@ -96,7 +84,8 @@ fn constants_need_no_more_than_the_pilot() {
         assert!(stats.error_estimated < 1e-15 && stats.error_worst < 1e-15);
     }
     // Plain convolution makes noise of them, and says so.
-    let silent = Silent(Constant::grey(0.3));
+    let grey = Constant::grey(0.3);
+    let silent = Silent(&grey);
     let (image, stats) = adaptive(&silent, &frame, &pattern, Normalization::None, 0.02);
     assert!(stats.blocks_refined > 0);
     let mse = image.values().iter().map(|v| (f64::from(*v) - 0.3).powi(2)).sum::<f64>();
@@ -313,7 +302,8 @@ fn pixels_without_samples_are_refined_or_told() {
     let set = PointSet::new(vec![DVec2::new(0.5, 0.5)]).expect("a set");
     // One sample for each 16 pixels, a box: most pixels have none.
     let box_kernel = table("box");
-    let scene = Silent(SphereScene::new(&frame, 1.0));
+    let sphere = SphereScene::new(&frame, 1.0);
+    let scene = Silent(&sphere);
     let how = Normalization::Density;
     for (most, leaves) in [(1.0 / 16.0, true), (64.0, false)] {
         let pattern = progressive(&set, 1.0 / 16.0, most);
@@ -329,7 +319,8 @@ fn where_nothing_is_known_nothing_is_stated() {
     let frame = frame(8, 8);
     let pattern = progressive(&random_set(1, 3), 1.0 / 1024.0, 1.0 / 1024.0);
     let (table, how) = (table("box"), Normalization::Density);
-    let scene = Silent(SphereScene::new(&frame, 1.0));
+    let sphere = SphereScene::new(&frame, 1.0);
+    let scene = Silent(&sphere);
     let renderer = AdaptiveRenderer::new(&scene, &pattern, &table, how, &frame, 0.1);
     let stats = renderer.image().expect("small").1;
     assert!(stats.empty_pixels >= 62 && stats.blocks_unresolved == 4, "{stats:?}");
@@ -365,7 +356,7 @@ fn knowing_constants_changes_no_bit() {
     assert!(board.constant_over(&rect).is_some(), "the sky");
     let pattern = progressive(&jittered_set(16, 2), 4.0, 64.0);
     let (told, stats) = adaptive(&board, &frame, &pattern, Normalization::Density, 0.03);
-    let (untold, all) = adaptive(&Silent(board), &frame, &pattern, Normalization::Density, 0.03);
+    let (untold, all) = adaptive(&Silent(&board), &frame, &pattern, Normalization::Density, 0.03);
     assert_eq!(told, untold);
     assert!(stats.evaluated < all.evaluated && stats.samples == all.samples);
     assert_eq!(stats.error_estimated, all.error_estimated);

@@ -1,5 +1,4 @@
 //! Point sets that geometry trips over, and the brute force that judges it.
-#![allow(dead_code, reason = "each test binary uses its part")]
 
 use bn_core::{DVec2, PointSet, Seed, StreamRng, torus};
 use bn_geometry::Triangulation;
