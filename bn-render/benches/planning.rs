@@ -7,9 +7,9 @@ use std::hint::black_box;
 
 use bn_core::{DVec2, PointSet, Seed, Unobserved};
 use bn_render::{
-    AdaptiveRenderer, Checkerboard, Frame, Image, ImageSpectrum, KernelTable, Normalization,
-    Pattern, PatternPower, PlaneWave, PlaneWaves, Prediction, ProgressivePattern, Renderer, Scene,
-    SphereScene, kernel,
+    AdaptiveRenderer, Channels, Checkerboard, Frame, Image, ImageSpectrum, KernelTable,
+    Normalization, Pattern, PatternPower, PlaneWave, PlaneWaves, Prediction, ProgressivePattern,
+    Renderer, Scene, SphereScene, kernel,
 };
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rand::RngExt;
