@@ -6,23 +6,27 @@ use rayon::prelude::*;
 use crate::periodogram::PowerBlock;
 use crate::{NufftError, PeriodogramOptions, QUIET_POWER, RingMeans};
 
-/// Rings are one cycle per unit wide: as fine as integer modes resolve.
+/// Rings are one cycle per unit wide: each has modes.
 const RING_WIDTH: f64 = 1.0;
+/// The inner bound of the first.
+const INNERMOST: f64 = 0.5;
 
 /// Columns that are sorted into rings as one piece of work.
 const COLUMNS: usize = 32;
 
 /// Sums over the modes of rings; modes come from the half plane and count twice, for k and −k.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct RingSums {
+    width: f64,
     modes: Vec<u64>,
     power: Vec<f64>,
     squares: Vec<f64>,
 }
 
 impl RingSums {
-    fn new(rings: usize) -> Self {
-        Self { modes: vec![0; rings], power: vec![0.0; rings], squares: vec![0.0; rings] }
+    fn new(rings: usize, width: f64) -> Self {
+        let zeros = vec![0.0; rings];
+        Self { width, modes: vec![0; rings], power: zeros.clone(), squares: zeros }
     }
 
     fn add_column(&mut self, kx: usize, limit: usize, power: &[f64]) {
@@ -31,7 +35,7 @@ impl RingSums {
         for (i, &p) in power.iter().enumerate().skip(first) {
             let ky = i as i64 - limit as i64;
             let square = (kx * kx) as f64 + (ky * ky) as f64;
-            let ring = (square.sqrt() / RING_WIDTH - 0.5) as usize;
+            let ring = ((square.sqrt() - INNERMOST) / self.width) as usize;
             if ring < self.modes.len() {
                 self.modes[ring] += 2;
                 self.power[ring] += 2.0 * p;
@@ -54,7 +58,7 @@ impl RingSums {
         let pieces: Vec<Self> = columns
             .par_chunks(COLUMNS)
             .map(|columns| {
-                let mut sums = Self::new(self.modes.len());
+                let mut sums = Self::new(self.modes.len(), self.width);
                 for (kx, power) in columns {
                     sums.add_column(*kx, block.max_frequency, power);
                 }
@@ -94,9 +98,19 @@ impl RadialPower {
     /// # Panics
     /// If there is no set.
     pub fn of(sets: &[PointSet], options: PeriodogramOptions) -> Result<Self, NufftError> {
+        Self::in_rings(sets, options, RING_WIDTH)
+    }
+
+    /// The same in rings of another width, one cycle or an integer part of it. The innermost of
+    /// narrower rings may have no mode: their means and variances are NaN.
+    pub(crate) fn in_rings(
+        sets: &[PointSet],
+        options: PeriodogramOptions,
+        width: f64,
+    ) -> Result<Self, NufftError> {
         assert!(!sets.is_empty(), "a spectrum needs a set");
-        let rings = options.max_frequency();
-        let mut sums = RingSums::new(rings);
+        let rings = (options.max_frequency() as f64 / width).round() as usize;
+        let mut sums = RingSums::new(rings, width);
         // The outermost ring ends half a cycle beyond K, before the next integer.
         options.for_each_block(sets, |block| sums.add(block))?;
         let means: Vec<f64> = (0..rings).map(|i| sums.power[i] / sums.modes[i] as f64).collect();
@@ -107,7 +121,7 @@ impl RadialPower {
         };
         Ok(Self {
             density: sets[0].density(),
-            bounds: (0..=rings).map(|i| (i as f64 + 0.5) * RING_WIDTH).collect(),
+            bounds: (0..=rings).map(|i| i as f64 * width + INNERMOST).collect(),
             variances: (0..rings).map(variance).collect(),
             modes: sums.modes,
             means,
@@ -157,7 +171,8 @@ impl RadialPower {
 
     /// The radial power at the rings' centres, in cycles per unit; `None` without rings.
     pub fn curve(&self) -> Option<Curve> {
-        (!self.means.is_empty()).then(|| Curve::new(RING_WIDTH, RING_WIDTH, self.means.clone()))
+        let &[inner, outer, ..] = self.bounds.as_slice() else { return None };
+        Some(Curve::new(0.5 * (inner + outer), outer - inner, self.means.clone()))
     }
 
     /// Anisotropy in dB at the rings' centres: 10·log₁₀ of the variance of the power within the

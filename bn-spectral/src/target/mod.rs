@@ -13,8 +13,11 @@ use annuli::{Annuli, steps_between};
 use sampled::{PowerSamples, RdfSamples};
 pub use single_peak::SinglePeak;
 
-/// Rings of a spectrum that is to be imitated reach to this times √n.
+/// Rings of a spectrum that is to be imitated reach to this times √n …
 const IMITATED: f64 = 6.0;
+/// … and have this width in cycles per unit. Means over wider rings take contrast from g: over one
+/// cycle 4 % at three spacings of 400 points, as a box of width w does by sin(πwr)/(πwr).
+const IMITATED_RING: f64 = 0.5;
 
 /// No parameter is larger.
 const HIGHEST: f64 = 1e9;
@@ -151,7 +154,7 @@ impl Target {
         Ok(Self { density, shape: Shape::Rdf(Box::new(RdfSamples::new(density, samples))) })
     }
 
-    /// The mean radial power of `sets`, ring by ring up to 6√n, as seen at the density of `points`
+    /// The mean radial power of `sets` in rings of half a cycle up to 6√n, as seen at the density of `points`
     /// points: frequencies scale with its square root (thesis §5.2.3). P is constant on each ring.
     ///
     /// # Errors
@@ -163,15 +166,18 @@ impl Target {
         }
         let density = Density::new(points);
         let limit = (IMITATED * (n as f64).sqrt()).ceil() as usize;
-        let radial = RadialPower::of(sets, PeriodogramOptions::new(limit).portable())?;
+        let options = PeriodogramOptions::new(limit).portable();
+        let radial = RadialPower::in_rings(sets, options, IMITATED_RING)?;
         let scale = (points as f64 / n as f64).sqrt();
         let curve = radial.curve().ok_or(TargetError::Sets)?;
-        let samples: Vec<_> = curve.iter().map(|(nu, power)| (nu * scale, power)).collect();
-        // Of R disordered sets a ring of c modes has a mean of variance 2P²/(cR).
-        let noise = samples.iter().zip(radial.modes()).map(|((_, power), &modes)| {
-            power * (2.0 * modes as f64 / sets.len() as f64).sqrt() / n as f64
-        });
-        let measured = PowerSamples::measured(&samples, noise.collect());
+        let rings = curve.iter().zip(radial.modes()).filter(|(_, modes)| **modes > 0);
+        let ring = |((nu, power), &modes): ((f64, f64), &u64)| {
+            // Of R disordered sets a ring of c modes has a mean of variance 2P²/(cR).
+            let noise = power * (2.0 * modes as f64 / sets.len() as f64).sqrt() / n as f64;
+            ((nu * scale, power), noise)
+        };
+        let (samples, noise): (Vec<_>, Vec<_>) = rings.map(ring).unzip();
+        let measured = PowerSamples::measured(&samples, noise);
         Ok(Self { density, shape: Shape::Power(measured) })
     }
 

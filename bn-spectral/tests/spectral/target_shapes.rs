@@ -2,7 +2,8 @@
 
 use bn_core::{Density, PointSet, Seed};
 use bn_spectral::{
-    HankelPlan, Realizability, SinglePeak, Target, TargetError, highest_step, step_rdf,
+    HankelPlan, Realizability, SinglePeak, Target, TargetError, direct_modes, highest_step,
+    step_rdf,
 };
 use rand::RngExt as _;
 
@@ -161,10 +162,41 @@ fn independent_points_are_imitated_by_one() {
     let set = PointSet::new(points).expect("valid");
     let target = Target::imitating(&[set], 4 * N).expect("measurable");
     assert_eq!(target.density().points_per_unit_area(), 4.0 * N as f64);
-    // Rings of c modes have a mean of variance 2/c; scaled by 2, ring i has about 4πi/… modes.
+    // Rings of c modes have a mean of variance 2/c. Frequencies are doubled: around ν there was a ring
+    // of half a cycle at ν/2, of πν/2 modes.
     for nu in [100.0_f64, 200.0, 300.0] {
-        let deviation = (2.0 / (std::f64::consts::PI * nu)).sqrt();
+        let deviation = (4.0 / (std::f64::consts::PI * nu)).sqrt();
         assert!((target.power(nu) - 1.0).abs() < 5.0 * deviation, "P({nu}) = {}", target.power(nu));
+    }
+}
+
+/// Over each ring of half a cycle that has modes the target is the mean of direct sums, also where a
+/// ring beside it has none.
+#[test]
+fn what_is_imitated_is_the_mean_of_each_ring() {
+    const M: usize = 30;
+    let mut rng = Seed::new(4).stream(0);
+    let points: Vec<_> = (0..M).map(|_| bn_core::DVec2::new(rng.random(), rng.random())).collect();
+    let target = Target::imitating(&[PointSet::new(points.clone()).expect("valid")], M);
+    let target = target.expect("measurable");
+    // 6√30 ≈ 32.9.
+    let limit = 33_i64;
+    let modes = direct_modes(&points, None, limit as usize);
+    let (mut count, mut sums) = (vec![0; 66], vec![[0.0; 2]; 66]);
+    for kx in -limit..=limit {
+        for ky in -limit..=limit {
+            let nu = ((kx * kx + ky * ky) as f64).sqrt();
+            let ring = (2.0 * nu) as usize;
+            if (1..66).contains(&ring) {
+                count[ring] += 1;
+                sums[ring][0] += modes.get(kx, ky).norm_sqr() / M as f64;
+                sums[ring][1] += target.power(nu);
+            }
+        }
+    }
+    assert_eq!((count[2], count[3], count[4]), (8, 0, 12));
+    for (ring, [want, got]) in sums.into_iter().enumerate() {
+        assert!((got - want).abs() <= 1e-6 * want, "ring {ring}: {got}, not {want}");
     }
 }
 

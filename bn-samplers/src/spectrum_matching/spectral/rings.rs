@@ -7,6 +7,9 @@ use rayon::prelude::*;
 const PER_CYCLE: f64 = 2.0;
 /// Mean target below which a ring is to be empty.
 const EMPTY: f64 = 1e-3;
+/// Where the target was measured, deviations count the more the less power there is, down to this:
+/// that of order is small, and would else be drowned.
+const QUIET: f64 = 0.02;
 /// Rows of modes that make one piece of work.
 const ROWS: usize = 64;
 
@@ -15,6 +18,9 @@ const ROWS: usize = 64;
 /// The cost is the mean over all modes 0 < |k| < K of λ·(ν₀/ν)^p·P on rings that are to be empty and
 /// of μ·(ν₀/ν)²·(P̄ − P)² on the others, ν₀ the end of the empty region, ring means in P̄; ν₀/ν counts
 /// as 1 below ν₀ on rings that aren't empty.
+///
+/// Of a target that was measured on point sets, μ is μ·1.02/(P + 0.02): without, imitations of well
+/// ordered points have five times the power of their models at low frequencies.
 ///
 /// The curvature of a mode's power by the points' positions grows like ν². With p = 2 and μ = λ/4 the
 /// cost's is about the same at every frequency: that is what makes the search short.
@@ -93,6 +99,8 @@ impl Rings {
         let root = target.density().points_per_unit_area().sqrt();
         let edge = (0..count).rev().find(|&ring| empty(ring)).map_or(0.5 * root, middle);
         let lambda = weights.empty.unwrap_or(Weights::ATTAINABLE);
+        let measured = target.is_measured();
+        let share = |power: f64| if measured { (1.0 + QUIET) / (power + QUIET) } else { 1.0 };
         let goal = |ring: usize| Goal {
             modes: modes[ring],
             power: power(ring),
@@ -100,7 +108,7 @@ impl Rings {
             weight: if empty(ring) {
                 lambda * libm::pow(edge / middle(ring), weights.exponent)
             } else {
-                weights.ring * (edge / middle(ring)).min(1.0).powi(2)
+                weights.ring * (edge / middle(ring)).min(1.0).powi(2) * share(power(ring))
             },
         };
         let goals: Vec<Goal> = (0..count).map(goal).collect();
