@@ -46,6 +46,7 @@ mod resample;
 mod scene;
 mod simd;
 mod supersampling;
+mod watch;
 
 pub use band_limited::{
     BandLimitedError, BandLimitedFit, BandLimitedMethod, BandLimitedOptions, BandLimitedRenderer,

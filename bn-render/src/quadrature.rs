@@ -1,9 +1,9 @@
 //! The convolution itself, by quadrature: what reconstruction tends to as samples become dense.
 
-use bn_core::DVec2;
+use bn_core::{DVec2, Observer};
 
 use crate::{
-    Frame, Image, ImageError, Kernel, Scene, Supersampling, SupersamplingError, Tap,
+    Frame, Image, Kernel, RenderError, Scene, Supersampling, SupersamplingError, Tap,
     mean_square_error,
 };
 
@@ -31,17 +31,20 @@ const MOST_NODES: usize = 32;
 /// no more than `tolerance` (root mean square). Nodes are shared by the pixels that they reach.
 /// Cost: up to 1024 values and 1024·(2·radius)² products a pixel.
 ///
+/// The observer is told of each image's progress, of which there are two to four.
+///
 /// # Errors
-/// If the frame's window is too large for an image in memory.
+/// If the frame's window is too large for an image in memory, or the observer asks to stop.
 pub fn exact_convolution(
     scene: &dyn Scene,
     kernel: &dyn Kernel,
     frame: &Frame,
     tolerance: f64,
-) -> Result<Convolution, ImageError> {
+    observer: &dyn Observer,
+) -> Result<Convolution, RenderError> {
     let cells = (2.0 * kernel.radius()) as usize;
     let most = MOST_NODES.min(Supersampling::MAX_TAPS.isqrt() / cells);
-    let at = |nodes: usize| rule(kernel, cells, nodes).render(scene, frame);
+    let at = |nodes: usize| rule(kernel, cells, nodes).render(scene, frame, observer);
     let (mut nodes, mut image) = (4, at(4)?.0);
     loop {
         nodes *= 2;
@@ -98,6 +101,7 @@ pub(crate) fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
 mod tests {
     use super::*;
     use crate::{KERNELS, PlaneWave, PlaneWaves, kernel};
+    use bn_core::Unobserved;
 
     #[test]
     fn rules_integrate_polynomials() {
@@ -130,7 +134,7 @@ mod tests {
         let wave = PlaneWave { amplitude: 0.4, frequency, phase_turns: 0.1 };
         let scene = PlaneWaves::new(0.5, vec![wave]);
         for &kernel in KERNELS {
-            let got = exact_convolution(&scene, kernel, &frame, 1e-6).expect("small");
+            let got = exact_convolution(&scene, kernel, &frame, 1e-6, &Unobserved).expect("small");
             assert!(got.converged, "{}: {}", kernel.name(), got.change);
             let gain = gain(kernel, 0.83) * gain(kernel, 0.37);
             for j in 0..20 {
@@ -150,7 +154,7 @@ mod tests {
         let frame = Frame::new(40, 30).expect("a size");
         let scene = crate::Checkerboard::new(&frame, 0.3, 5.0, 0.5);
         let kernel = kernel("lanczos2").expect("a kernel");
-        let got = exact_convolution(&scene, kernel, &frame, 1e-7).expect("small");
+        let got = exact_convolution(&scene, kernel, &frame, 1e-7, &Unobserved).expect("small");
         // Most of it lies at the horizon, where squares are as small as one likes.
         assert!(!got.converged && (1e-3..0.03).contains(&got.change), "{}", got.change);
         assert_eq!(got.samples_per_pixel, 1024);

@@ -9,6 +9,7 @@ use super::error::BandLimitedError;
 use super::evaluate::at_pixels;
 use super::fit::{BandLimitedFit, level};
 use super::response::LowPass;
+use crate::watch::{Turn, Watch};
 use crate::{Channels, Frame, Image, Pattern, SampleList, Scene};
 
 /// How the polynomial is found.
@@ -152,7 +153,7 @@ impl BandLimitedRenderer<'_> {
         Image::check_size(window.width, window.height, channels)?;
         let rate = self.pattern.samples_per_pixel();
         let (domain, band) = self.options.domain(&self.frame, self.low_pass, rate)?;
-        let samples = Samples::taken(self, &domain)?;
+        let samples = Samples::taken(self, &domain, observer)?;
         let points = samples.places.u().iter().zip(samples.places.v());
         let points = points.map(|(&u, &v)| domain.on_torus(u, v)).collect();
         let mut fit = BandLimitedFit::new(points, &samples.weights, domain.degree)?;
@@ -198,6 +199,7 @@ impl Samples {
     fn taken(
         renderer: &BandLimitedRenderer<'_>,
         domain: &Domain,
+        observer: &dyn Observer,
     ) -> Result<Self, BandLimitedError> {
         let rect = domain.rect(renderer.pattern)?;
         let mut places = SampleList::default();
@@ -211,10 +213,16 @@ impl Samples {
         };
         let channels = renderer.scene.channels().count();
         let constant = renderer.scene.constant_over(&rect);
-        let (values, evaluated) = match constant {
-            Some(color) => (color[..channels].iter().map(|&c| vec![c; places.len()]).collect(), 0),
-            None => (evaluated(renderer.scene, &places, channels), places.len() as u64),
-        };
+        if let Some(color) = constant {
+            let values = color[..channels].iter().map(|&c| vec![c; places.len()]).collect();
+            return Ok(Self { places, weights, values, evaluated: 0 });
+        }
+        let watch = Watch::new(observer, places.len() as u64);
+        let values = evaluated(renderer.scene, &places, channels, &watch);
+        if watch.is_stopped() {
+            return Err(BandLimitedError::Cancelled);
+        }
+        let evaluated = places.len() as u64;
         Ok(Self { places, weights, values, evaluated })
     }
 
@@ -228,13 +236,20 @@ impl Samples {
     }
 }
 
-/// The scene's values, channel by channel.
-fn evaluated(scene: &dyn Scene, places: &SampleList, channels: usize) -> Vec<Vec<f64>> {
+/// The scene's values, channel by channel; zeros where the watch was stopped.
+fn evaluated(
+    scene: &dyn Scene,
+    places: &SampleList,
+    channels: usize,
+    watch: &Watch<'_>,
+) -> Vec<Vec<f64>> {
     let chunks: Vec<Vec<f64>> = (places.u().par_chunks(CHUNK))
         .zip(places.v().par_chunks(CHUNK))
-        .map(|(u, v)| {
+        .map_init(Turn::default, |turn, (u, v)| {
             let mut out = vec![0.0; channels * u.len()];
-            scene.values(u, v, &mut out);
+            if watch.took(u.len(), turn) {
+                scene.values(u, v, &mut out);
+            }
             out
         })
         .collect();

@@ -107,10 +107,7 @@ impl Pattern {
         weights: &[f64],
         samples_per_pixel: f64,
     ) -> Result<Self, PatternError> {
-        let limit = f64::from(1 << 16);
-        if !(1.0 / limit..=limit).contains(&samples_per_pixel) {
-            return Err(PatternError::SamplesPerPixel { samples_per_pixel });
-        }
+        check_rate(samples_per_pixel)?;
         let side = (set.len() as f64 / samples_per_pixel).sqrt();
         let variation = TileVariation::Repeated;
         Ok(Self { buckets: Buckets::new(set, weights), samples_per_pixel, side, variation })
@@ -148,52 +145,51 @@ impl Pattern {
     /// samples of a smaller rectangle come in the same order as within a larger one. Cost: some 2
     /// ns for each sample in the rectangle grown by a few samples' distance.
     pub fn samples_in(&self, rect: &Rect, list: &mut SampleList) {
-        self.for_each_tile(rect, |tile| self.append(rect, tile, list));
+        let Some([columns, rows]) = self.spans(rect) else { return };
+        for row in rows {
+            for &column in &columns {
+                self.append(rect, &Tile { column, row }, list);
+            }
+        }
     }
 
-    /// The number of samples with `min ≤ (u, v) < max`; the cost is that of the samples
-    /// along its border, and a few ns for each tile.
+    /// The number of samples with `min ≤ (u, v) < max`; the cost is that of the samples along its
+    /// border, and a few ns for each row and column of tiles.
     pub fn count_in(&self, rect: &Rect) -> u64 {
+        let Some([columns, rows]) = self.spans(rect) else { return 0 };
+        let whole: u64 = columns.iter().map(|column| u64::from(column.is_whole())).sum();
+        let cut: Vec<Span> = columns.iter().copied().filter(|column| !column.is_whole()).collect();
         let (mut count, mut list) = (0, SampleList::default());
-        self.for_each_tile(rect, |tile| {
-            if tile.is_whole() {
-                count += self.points_per_tile() as u64;
+        for row in rows {
+            let looked_at = if row.is_whole() {
+                count += whole * self.points_per_tile() as u64;
+                &cut
             } else {
+                &columns
+            };
+            for &column in looked_at {
                 list.clear();
-                self.append(rect, tile, &mut list);
+                self.append(rect, &Tile { column, row }, &mut list);
                 count += list.len() as u64;
             }
-        });
+        }
         count
     }
 
-    /// Calls `visit` for each tile that meets the rectangle, row by row.
-    fn for_each_tile(&self, rect: &Rect, mut visit: impl FnMut(&Tile)) {
+    /// The columns and the rows of tiles that meet the rectangle; nothing if it isn't finite.
+    fn spans(&self, rect: &Rect) -> Option<[Vec<Span>; 2]> {
         let (low, high) = (rect.min / self.side, rect.max / self.side);
-        if !(low.is_finite() && high.is_finite()) {
-            return;
-        }
-        let overlap = |low: f64, high: f64, index: i64| {
-            let slack = slack(index as f64);
-            (low - index as f64 - slack, high - index as f64 + slack)
-        };
-        let tiles = |low: f64, high: f64| {
-            (low - slack(low)).floor() as i64..=(high + slack(high)).floor() as i64
-        };
-        for b in tiles(low.y, high.y) {
-            let y = overlap(low.y, high.y, b);
-            for a in tiles(low.x, high.x) {
-                visit(&Tile { a, b, x: overlap(low.x, high.x, a), y });
-            }
-        }
+        (low.is_finite() && high.is_finite())
+            .then(|| [Span::all(low.x, high.x), Span::all(low.y, high.y)])
     }
 
     fn append(&self, rect: &Rect, tile: &Tile, list: &mut SampleList) {
         let (xs, ys) = (self.buckets.xs(), self.buckets.ys());
         let weights = self.buckets.weights();
-        let corner = DVec2::new(tile.a as f64, tile.b as f64);
-        let Some(change) = self.variation.of_tile(tile.a, tile.b) else {
-            for run in self.buckets.runs(tile.x, tile.y) {
+        let (a, b) = (tile.column.index, tile.row.index);
+        let corner = DVec2::new(a as f64, b as f64);
+        let Some(change) = self.variation.of_tile(a, b) else {
+            for run in self.buckets.runs(tile.column.wanted, tile.row.wanted) {
                 let points = xs[run.clone()].iter().zip(&ys[run.clone()]);
                 let places = points.map(|(&x, &y)| (corner + DVec2::new(x, y)) * self.side);
                 list.append(rect, places, weights.get(run));
@@ -218,6 +214,16 @@ impl Pattern {
     }
 }
 
+/// An error if this is no number of samples per pixel.
+pub(crate) fn check_rate(samples_per_pixel: f64) -> Result<(), PatternError> {
+    let limit = f64::from(1 << 16);
+    if (1.0 / limit..=limit).contains(&samples_per_pixel) {
+        Ok(())
+    } else {
+        Err(PatternError::SamplesPerPixel { samples_per_pixel })
+    }
+}
+
 /// What a coordinate over a tile's side may be off, with room: relative to the tile's index for
 /// the rounding of the division, and a little more.
 fn slack(index: f64) -> f64 {
@@ -226,25 +232,38 @@ fn slack(index: f64) -> f64 {
 
 fn clamped_sources(change: Change, tile: &Tile) -> [[Interval; 2]; 2] {
     let clamp = |(low, high): Interval| (low.max(0.0), high.min(1.0));
-    change.sources(clamp(tile.x), clamp(tile.y))
+    change.sources(clamp(tile.column.wanted), clamp(tile.row.wanted))
 }
 
 /// A tile, and what is wanted of it in its own coordinates.
 struct Tile {
-    a: i64,
-    b: i64,
-    x: Interval,
-    y: Interval,
+    column: Span,
+    row: Span,
 }
 
-impl Tile {
-    /// Whether all of the tile is wanted, beyond doubt.
-    fn is_whole(&self) -> bool {
-        // The intervals are generous by one slack; two more make sure.
-        let whole = |(low, high): Interval, index: i64| {
+/// A column or row of tiles, and what is wanted of it in its own coordinates.
+#[derive(Clone, Copy)]
+struct Span {
+    index: i64,
+    wanted: Interval,
+}
+
+impl Span {
+    /// Those that meet the interval from `low` to `high`, in sides of a tile.
+    fn all(low: f64, high: f64) -> Vec<Self> {
+        let span = |index: i64| {
             let slack = slack(index as f64);
-            low < -3.0 * slack && high > 1.0 + 3.0 * slack
+            Self { index, wanted: (low - index as f64 - slack, high - index as f64 + slack) }
         };
-        whole(self.x, self.a) && whole(self.y, self.b)
+        let first = (low - slack(low)).floor() as i64;
+        (first..=(high + slack(high)).floor() as i64).map(span).collect()
+    }
+
+    /// Whether all of it is wanted, beyond doubt.
+    fn is_whole(&self) -> bool {
+        // The interval is generous by one slack; two more make sure.
+        let (low, high) = self.wanted;
+        let slack = slack(self.index as f64);
+        low < -3.0 * slack && high > 1.0 + 3.0 * slack
     }
 }

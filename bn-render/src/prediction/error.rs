@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::transfer::WhiteNoise;
 use super::{ImageSpectrum, KernelTransfer, PatternPower, SpectralLine};
+use crate::pattern::check_rate;
 use crate::{Kernel, PatternError};
 
 /// Predicts the error of an image that is sampled by a pattern at a rate (thesis section 3.2.1).
@@ -30,10 +31,7 @@ impl<'a> Prediction<'a> {
     /// # Errors
     /// If `samples_per_pixel` is not a number from 2⁻¹⁶ to 2¹⁶.
     pub fn new(pattern: &'a PatternPower, samples_per_pixel: f64) -> Result<Self, PatternError> {
-        let limit = f64::from(1 << 16);
-        if !(1.0 / limit..=limit).contains(&samples_per_pixel) {
-            return Err(PatternError::SamplesPerPixel { samples_per_pixel });
-        }
+        check_rate(samples_per_pixel)?;
         Ok(Self { pattern, samples_per_pixel })
     }
 

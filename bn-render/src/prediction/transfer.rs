@@ -133,7 +133,9 @@ mod tests {
         for &kernel in KERNELS {
             let response = KernelTransfer::new(kernel, 1.0).response(frequency);
             assert!(response.im.abs() < 1e-14, "{}", kernel.name());
-            let exact = crate::exact_convolution(&scene, kernel, &frame, 1e-7).expect("small");
+            let exact =
+                crate::exact_convolution(&scene, kernel, &frame, 1e-7, &bn_core::Unobserved)
+                    .expect("small");
             for (i, &value) in exact.image.values().iter().enumerate() {
                 let at = DVec2::new((i % 8) as f64 + 0.5, (i / 8) as f64 + 0.5);
                 let want = response.re * crate::Scene::value(&scene, at)[0];

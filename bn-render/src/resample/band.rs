@@ -7,6 +7,7 @@ use super::accumulate::{Job, accumulate};
 use super::blocks::{BlockPlan, BlockRow};
 use super::cells::{Strip, StripPlace, rows_per_strip};
 use super::renderer::{Normalization, RenderStats};
+use crate::watch::{Turn, Watch};
 use crate::{KernelTable, Pattern, Scene, Window};
 
 /// Sums over samples for a rectangle of pixels.
@@ -41,6 +42,7 @@ pub(super) struct Layout<'a> {
 pub(super) struct Scratch {
     strip: Strip,
     values: Vec<f64>,
+    turn: Turn,
 }
 
 impl<'a> Layout<'a> {
@@ -83,10 +85,11 @@ impl<'a> Layout<'a> {
         8 * rows * width * (1 + self.scene.channels().count())
     }
 
-    /// Accumulates all samples of band `band`.
+    /// Accumulates all samples of band `band`, or some of them if the watch is stopped.
     pub(super) fn accumulate_band(
         &self,
         band: i64,
+        watch: &Watch<'_>,
         scratch: &mut Scratch,
     ) -> (Planes, RenderStats) {
         let rows =
@@ -109,7 +112,13 @@ impl<'a> Layout<'a> {
         for column in columns.start.div_euclid(BLOCK)..=(columns.end - 1).div_euclid(BLOCK) {
             if self.is_needed(column, band, &around) {
                 let part = (band, column, rows.clone());
-                self.accumulate_block(part, &around, &mut planes, scratch, &mut stats);
+                self.accumulate_block(
+                    part,
+                    &around,
+                    &mut planes,
+                    (watch, &mut *scratch),
+                    &mut stats,
+                );
             }
         }
         (planes, stats)
@@ -133,7 +142,7 @@ impl<'a> Layout<'a> {
         (band, column, rows): (i64, i64, Range<i64>),
         around: &[BlockRow; 3],
         planes: &mut Planes,
-        scratch: &mut Scratch,
+        (watch, scratch): (&Watch<'_>, &mut Scratch),
         stats: &mut RenderStats,
     ) {
         let x = self.cell_columns.start.max(column * BLOCK);
@@ -141,7 +150,7 @@ impl<'a> Layout<'a> {
         let height = rows_per_strip(self.pattern.samples_per_pixel()) as i64;
         // Strips are cut at fixed rows, not that it mattered: cells are independent.
         let mut y = rows.start;
-        while y < rows.end {
+        while y < rows.end && !watch.is_stopped() {
             let end = ((y.div_euclid(height) + 1) * height).min(rows.end);
             let place = StripPlace { x, y, columns, rows: (end - y) as usize };
             scratch.strip.collect(self.pattern, place, self.table.phase());
@@ -164,6 +173,7 @@ impl<'a> Layout<'a> {
                 references_start: (band - 1) * BLOCK,
             };
             accumulate(&job, planes);
+            watch.took(n, &mut scratch.turn);
             y = end;
         }
     }

@@ -2,14 +2,14 @@
 
 use std::collections::VecDeque;
 use std::io;
-use std::ops::ControlFlow;
 
-use bn_core::{Observer, Progress, Unobserved};
+use bn_core::{Observer, Unobserved};
 use rayon::prelude::*;
 use thiserror::Error;
 
 use super::band::{Layout, Planes, Scratch};
 use super::blocks::block_range;
+use crate::watch::Watch;
 use crate::{Channels, Frame, Image, ImageError, KernelTable, Pattern, Scene};
 
 /// How the sum over samples becomes a pixel.
@@ -139,6 +139,7 @@ impl<'a> Renderer<'a> {
     ) -> Result<RenderStats, RenderError> {
         let layout = &self.layout;
         let window = layout.window;
+        let watch = Watch::new(observer, window.height.into());
         let mut stats = RenderStats { samples: self.samples(), ..Default::default() };
         let bands = layout.bands();
         let at_once =
@@ -153,7 +154,7 @@ impl<'a> Renderer<'a> {
             next_band = group.end;
             // Rows finished before are handed over while the next bands are in work.
             let (made, taken) = rayon::join(
-                || accumulate(layout, group),
+                || accumulate(layout, group, &watch),
                 || {
                     finished
                         .drain(..)
@@ -161,6 +162,9 @@ impl<'a> Renderer<'a> {
                 },
             );
             taken?;
+            if watch.is_stopped() {
+                return Err(RenderError::Cancelled);
+            }
             for (planes, of_band) in made {
                 stats.add(&of_band);
                 held.planes.push_back(planes);
@@ -178,9 +182,7 @@ impl<'a> Renderer<'a> {
             next_row = ready.max(next_row);
             held.forget_before(next_row - 1);
             let done = layout.pixel_rows(next_row - 1).end - i64::from(window.y);
-            let progress =
-                Progress::new("rendering", done.max(0) as u64, Some(u64::from(window.height)));
-            if let ControlFlow::Break(()) = observer.observe(&progress) {
+            if !watch.reached(done.max(0) as u64) {
                 return Err(RenderError::Cancelled);
             }
         }
@@ -228,10 +230,11 @@ impl Held {
 fn accumulate(
     layout: &Layout<'_>,
     bands: std::ops::Range<i64>,
+    watch: &Watch<'_>,
 ) -> Vec<(Planes, super::RenderStats)> {
     bands
         .into_par_iter()
-        .map_init(Scratch::default, |scratch, band| layout.accumulate_band(band, scratch))
+        .map_init(Scratch::default, |scratch, band| layout.accumulate_band(band, watch, scratch))
         .collect()
 }
 

@@ -1,9 +1,11 @@
 //! Images through supersampling patterns.
 
+use bn_core::Observer;
 use rayon::prelude::*;
 
 use super::{Class, Supersampling};
-use crate::{Frame, Image, ImageError, Scene};
+use crate::watch::Watch;
+use crate::{Frame, Image, RenderError, Scene};
 
 impl Supersampling {
     /// The frame's window of the scene through this pattern, and the number of samples taken:
@@ -12,21 +14,33 @@ impl Supersampling {
     /// Sums run over classes of shared samples and then over taps, in f64, the same on any number
     /// of threads. Memory: two f64 a pixel and channel beside the image.
     ///
+    /// The observer is asked once for each class, and told how many of them are done.
+    ///
     /// # Errors
-    /// If the window is too large for an image in memory.
-    pub fn render(&self, scene: &dyn Scene, frame: &Frame) -> Result<(Image, u64), ImageError> {
+    /// If the window is too large for an image in memory, or the observer asks to stop.
+    pub fn render(
+        &self,
+        scene: &dyn Scene,
+        frame: &Frame,
+        observer: &dyn Observer,
+    ) -> Result<(Image, u64), RenderError> {
         let window = frame.window();
         let (width, height) = (window.width as usize, window.height as usize);
         let channels = scene.channels().count();
         Image::check_size(window.width, window.height, scene.channels())?;
         let mut sums = vec![0.0; width * height * channels];
         let mut taken = 0;
-        for class in self.classes() {
-            let lattice = Lattice::around(&class, frame);
-            let samples = lattice.evaluate(scene, &class);
+        let classes = self.classes();
+        let watch = Watch::new(observer, classes.len() as u64);
+        for (done, class) in (0..).zip(&classes) {
+            if !watch.reached(done) {
+                return Err(RenderError::Cancelled);
+            }
+            let lattice = Lattice::around(class, frame);
+            let samples = lattice.evaluate(scene, class);
             taken += (lattice.width * lattice.height) as u64;
             let rows = sums.par_chunks_exact_mut(width * channels).enumerate();
-            rows.for_each(|(j, row)| lattice.add_row(&class, &samples, channels, j, row));
+            rows.for_each(|(j, row)| lattice.add_row(class, &samples, channels, j, row));
         }
         let values = sums.into_iter().map(|sum| sum as f32).collect();
         Ok((Image::new(window.width, window.height, scene.channels(), values)?, taken))

@@ -99,7 +99,8 @@ fn constants_need_no_more_than_the_pilot() {
 fn estimates_of_the_pilot_are_unbiased_or_bounds() {
     let frame = frame(96, 96);
     let scene = ZonePlate::new(&frame, 1.0);
-    let exact = exact_convolution(&scene, kernel("lanczos2").expect("a kernel"), &frame, 1e-6);
+    let exact =
+        exact_convolution(&scene, kernel("lanczos2").expect("a kernel"), &frame, 1e-6, &Unobserved);
     let exact = exact.expect("small").image;
     for normalization in [Normalization::Density, Normalization::None] {
         for jittered in [true, false] {
@@ -123,6 +124,33 @@ fn estimates_of_the_pilot_are_unbiased_or_bounds() {
     }
 }
 
+/// Four independent samples a pixel nearly cancel in some pixels of kernels with negative lobes, which
+/// are off by any amount: no window that holds one passes, and none is left in the end.
+#[test]
+fn pixels_of_next_to_no_weight_are_not_believed() {
+    let frame = frame(96, 96);
+    let scene = ZonePlate::new(&frame, 1.0);
+    let exact =
+        exact_convolution(&scene, kernel("lanczos2").expect("a kernel"), &frame, 1e-6, &Unobserved);
+    let exact = exact.expect("small").image;
+    let how = Normalization::Density;
+    for seed in 0..5 {
+        let set = random_set(4096, seed);
+        let (_, pilot) = adaptive(&scene, &frame, &progressive(&set, 4.0, 4.0), how, 1.0);
+        assert!(pilot.blocks_unresolved > 0 && pilot.empty_pixels == 0, "{pilot:?}");
+        let (image, stats) = adaptive(&scene, &frame, &progressive(&set, 4.0, 5000.0), how, 0.1);
+        let truth = mean_square_error(&image, &exact).expect("same shape").sqrt();
+        println!("{truth:.4} {stats:?}");
+        // A window may be left with what its neighbours' pixels err.
+        assert!(stats.blocks_unresolved <= 2, "{stats:?}");
+        let ratio = truth / stats.error_estimated;
+        assert!((0.7..1.3).contains(&ratio), "{truth} {stats:?}");
+    }
+    let (_, spread) =
+        adaptive(&scene, &frame, &progressive(&jittered_set(64, 1), 4.0, 4.0), how, 1.0);
+    assert_eq!(spread.blocks_unresolved, 0, "{spread:?}");
+}
+
 #[test]
 fn the_stated_error_is_about_the_true_one() {
     let frame = frame(100, 90);
@@ -132,7 +160,13 @@ fn the_stated_error_is_about_the_true_one() {
     let scenes: [(&str, &dyn Scene); 3] =
         [("plate", &plate), ("board", &board), ("sphere", &sphere)];
     for (name, scene) in scenes {
-        let exact = exact_convolution(scene, kernel("lanczos2").expect("a kernel"), &frame, 1e-4);
+        let exact = exact_convolution(
+            scene,
+            kernel("lanczos2").expect("a kernel"),
+            &frame,
+            1e-4,
+            &Unobserved,
+        );
         let exact = exact.expect("small");
         for (set, kind) in [(jittered_set(64, 3), "jittered"), (random_set(4096, 3), "random")] {
             // Independent samples take long to reach the smaller one.
@@ -204,7 +238,8 @@ impl Scene for HalfPlate {
 fn half_constant_scenes_cost_less_at_the_same_error() {
     let frame = frame(128, 128);
     let scene = HalfPlate(ZonePlate::new(&frame, 2.0));
-    let exact = exact_convolution(&scene, kernel("lanczos2").expect("a kernel"), &frame, 1e-5);
+    let exact =
+        exact_convolution(&scene, kernel("lanczos2").expect("a kernel"), &frame, 1e-5, &Unobserved);
     let exact = exact.expect("small").image;
     let error_of = |image: &Image| mean_square_error(image, &exact).expect("same shape").sqrt();
     let set = jittered_set(64, 5);
@@ -332,7 +367,8 @@ fn where_nothing_is_known_nothing_is_stated() {
 fn empty_pixels_hide_no_error() {
     let frame = frame(96, 96);
     let scene = ZonePlate::new(&frame, 0.5);
-    let exact = exact_convolution(&scene, kernel("box").expect("a kernel"), &frame, 1e-5);
+    let exact =
+        exact_convolution(&scene, kernel("box").expect("a kernel"), &frame, 1e-5, &Unobserved);
     let exact = exact.expect("small").image;
     for rate in [1.0, 2.0, 4.0] {
         let pattern = progressive(&random_set(4096, 1), rate, rate);

@@ -70,11 +70,26 @@ fn band_limited_images_are_found_from_jittered_samples() {
     assert_eq!((stats.samples, stats.evaluated, stats.band), (16_384, 16_384, 0.5));
     let kernel = kernel("lanczos2").expect("a kernel");
     let (image, _) = render(&scene, &pattern, LowPass::Kernel(kernel), frame, options);
-    let exact = exact_convolution(&scene, kernel, &frame, 1e-9).expect("small").image;
+    let exact = exact_convolution(&scene, kernel, &frame, 1e-9, &Unobserved).expect("small").image;
     assert!(psnr(&image, &exact) >= 100.0);
     let slow = BandLimitedOptions { method: BandLimitedMethod::Pocs, ..options };
     let (image, stats) = render(&scene, &pattern, LowPass::Nyquist, frame, slow);
     assert!(psnr(&image, &ideal(&scene, frame)) >= 45.0, "{stats:?}");
+}
+
+/// Where the image's border cuts tiles apart, samples are as irregular as anywhere.
+#[test]
+fn tiles_need_not_divide_a_periodic_image() {
+    let frame = frame(64, 64);
+    let scene = waves(&[(31.0 / 64.0, 30.0 / 64.0), (-0.25, 0.125), (3.0 / 64.0, 0.0)]);
+    for (m, side) in [(100, 50.0), (46, 23.0)] {
+        let pattern = weighted(&jittered_set(m, 1), 4.0);
+        assert_eq!(pattern.side(), side);
+        let options = BandLimitedOptions { border: Border::Periodic, ..Default::default() };
+        let (image, stats) = render(&scene, &pattern, LowPass::Nyquist, frame, options);
+        let reached = psnr(&image, &ideal(&scene, frame));
+        assert!(reached >= 100.0 && stats.converged(), "{reached} {stats:?}");
+    }
 }
 
 #[test]
@@ -86,7 +101,7 @@ fn images_that_do_not_repeat_are_found_too() {
         (LowPass::Nyquist, ideal(&scene, frame)),
         (LowPass::Kernel(kernel("mitchell").expect("a kernel")), {
             let kernel = kernel("mitchell").expect("a kernel");
-            exact_convolution(&scene, kernel, &frame, 1e-9).expect("small").image
+            exact_convolution(&scene, kernel, &frame, 1e-9, &Unobserved).expect("small").image
         }),
     ] {
         let (image, stats) =
@@ -145,7 +160,10 @@ fn hard_cases_end_with_numbers_and_are_told_of() {
             let options = BandLimitedOptions { method, band, ..Default::default() };
             let pattern = Pattern::tiled(&set, rate).expect("a rate");
             let (image, stats) = render(&scene, &pattern, LowPass::Nyquist, frame, options);
-            assert!(image.values().iter().all(|v| v.abs() < 50.0), "{rate} {band:?}");
+            // The scene's values lie in [0, 1]; polynomials overshoot most in the gaps of few samples.
+            let over = if rate == 0.5 { 1.0 } else { 0.25 };
+            let range = -over..=1.0 + over;
+            assert!(image.values().iter().all(|v| range.contains(v)), "{rate} {band:?}");
             let few = stats.convergence.iter().any(bn_render::Convergence::is_underdetermined);
             assert_eq!(few, rate == 0.5, "{stats:?}");
         }

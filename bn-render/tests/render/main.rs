@@ -3,6 +3,7 @@
 mod adaptive;
 mod band_limited;
 mod band_limited_images;
+mod cancelling;
 mod common;
 mod images;
 mod pattern;

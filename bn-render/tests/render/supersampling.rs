@@ -1,6 +1,6 @@
 //! Periodic supersampling against its equations.
 
-use bn_core::DVec2;
+use bn_core::{DVec2, Unobserved};
 use bn_render::{
     Constant, Frame, PlaneWave, PlaneWaves, SUPERSAMPLING, Scene, StripedCloth, Supersampling,
     SupersamplingError, Tap, Window, supersampling,
@@ -65,7 +65,7 @@ fn a_wave_is_damped_by_the_transfer_function() {
         for frequency in [DVec2::new(0.13, 0.31), DVec2::new(0.9, -0.4), DVec2::new(1.5, 1.1)] {
             let wave = PlaneWave { amplitude: 0.5, frequency, phase_turns: 0.1 };
             let scene = PlaneWaves::new(0.5, vec![wave]);
-            let (image, _) = pattern.render(&scene, &frame).expect("small");
+            let (image, _) = pattern.render(&scene, &frame, &Unobserved).expect("small");
             // Symmetric patterns have a real transform, of either sign.
             let gain: f64 = pattern
                 .taps()
@@ -93,7 +93,7 @@ fn images_follow_the_definition_and_share_samples() {
     let scene = StripedCloth::new(&frame);
     for name in SUPERSAMPLING {
         let pattern = pattern(name);
-        let (image, taken) = pattern.render(&scene, &frame).expect("small");
+        let (image, taken) = pattern.render(&scene, &frame, &Unobserved).expect("small");
         for (i, j) in [(0, 0), (63, 47), (20, 31), (40, 2)] {
             let centre = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5);
             let want: f64 = pattern
@@ -108,7 +108,7 @@ fn images_follow_the_definition_and_share_samples() {
         assert!(taken >= n * 64 * 48 && taken <= n * 68 * 52, "{name}: {taken}");
         let window = Window { x: 10, y: 7, width: 9, height: 5 };
         let cropped = frame.cropped(window).expect("inside");
-        let (part, fewer) = pattern.render(&scene, &cropped).expect("small");
+        let (part, fewer) = pattern.render(&scene, &cropped, &Unobserved).expect("small");
         assert_eq!(part.pixel(3, 4), image.pixel(13, 11));
         assert!(fewer <= n * 13 * 9);
     }
@@ -118,7 +118,7 @@ fn images_follow_the_definition_and_share_samples() {
 fn three_channels_are_kept_apart() {
     let frame = Frame::new(5, 4).expect("a size");
     let scene = Constant::rgb([0.25, 0.5, 1.0]);
-    let (image, _) = pattern("lanczos2").render(&scene, &frame).expect("small");
+    let (image, _) = pattern("lanczos2").render(&scene, &frame, &Unobserved).expect("small");
     for pixel in image.values().chunks_exact(3) {
         assert_eq!(pixel, [0.25, 0.5, 1.0]);
     }

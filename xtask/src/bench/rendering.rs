@@ -38,7 +38,7 @@ impl Subject {
     }
 
     fn reference(&self, kernel: &dyn Kernel) -> Outcome<Image> {
-        let made = exact_convolution(&self.plate, kernel, &self.frame, 1e-7);
+        let made = exact_convolution(&self.plate, kernel, &self.frame, 1e-7, &Unobserved);
         Ok(made.map_err(Failure::failed)?.image)
     }
 }

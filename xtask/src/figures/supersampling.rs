@@ -3,6 +3,7 @@
 
 use bn_cli::plot::{Axis, Grid, Page, Panel, Reference, Row, Series, Style, Text};
 use bn_cli::{Failure, Outcome};
+use bn_core::Unobserved;
 use bn_render::{Frame, Image, Interpolation, Picture, StripedCloth, Supersampling, supersampling};
 
 use super::FigureSpec;
@@ -37,7 +38,7 @@ fn second(studio: &Studio) -> Outcome {
 fn test_image() -> Outcome<Image> {
     let large = Frame::new(LARGE, LARGE).map_err(Failure::failed)?;
     let once = supersampling("none").expect("in the list");
-    Ok(once.render(&StripedCloth::new(&large), &large).map_err(Failure::failed)?.0)
+    Ok(once.render(&StripedCloth::new(&large), &large, &Unobserved).map_err(Failure::failed)?.0)
 }
 
 fn page(studio: &Studio, names: &[&str]) -> Outcome {
@@ -46,7 +47,7 @@ fn page(studio: &Studio, names: &[&str]) -> Outcome {
     let mut page = Page::new().with_density(2.0);
     for name in names {
         let pattern = supersampling(name).expect("in the list");
-        let (image, _) = pattern.render(&scene, &small).map_err(Failure::failed)?;
+        let (image, _) = pattern.render(&scene, &small, &Unobserved).map_err(Failure::failed)?;
         page = page.row(Row::new(
             SIDE,
             vec![taps(&pattern), transfer(&pattern)?, section(&pattern), resampled(&image)?],

@@ -1,6 +1,7 @@
 //! Zone plates: what patterns do to all frequencies at once (figures 2.5, 3.7, 5.8, 5.9).
 
 use bn_cli::{Failure, Outcome};
+use bn_core::Unobserved;
 use bn_render::{
     Frame, Image, LimitedZonePlate, Scene, Window, ZonePlate, error_picture, exact_convolution,
 };
@@ -101,7 +102,9 @@ fn low(studio: &Studio) -> Outcome {
         Window { x: side(studio), y: side(studio), width: side(studio), height: side(studio) };
     let corner = frame.cropped(corner).map_err(Failure::failed)?;
     let exact = bn_render::kernel("lanczos2").expect("in the list");
-    let exact = exact_convolution(&plate, exact, &corner, 1e-4).map_err(Failure::failed)?.image;
+    let exact = exact_convolution(&plate, exact, &corner, 1e-4, &Unobserved)
+        .map_err(Failure::failed)?
+        .image;
     let (mut images, mut errors) = (Vec::new(), Vec::new());
     for (method, label) in [("step", "step blue noise"), ("dart-throwing", "dart throwing")] {
         let image = sampled(studio, method, &[], &plate, &corner, 1.0)?;

@@ -7,7 +7,7 @@ use bn_cli::{Failure, Outcome};
 use bn_core::{DVec2, PointSet, Seed, Unobserved};
 use bn_render::{
     Frame, Image, Interpolation, KernelTable, Normalization, Pattern, Picture, Renderer,
-    SphereScene, Supersampling, mean_square_error, peak_signal_to_noise,
+    SphereScene, mean_square_error, peak_signal_to_noise,
 };
 use bn_samplers::{Hexagonal, Sampler as _};
 use rand::RngExt;
@@ -61,7 +61,7 @@ impl Downsampling {
         let frame = Frame::new(SMALL, SMALL).map_err(Failure::failed)?;
         let scene = SphereScene::new(&large, CONTRAST);
         let once = bn_render::supersampling("none").expect("in the list");
-        let (image, _) = Supersampling::render(&once, &scene, &large).map_err(Failure::failed)?;
+        let (image, _) = once.render(&scene, &large, &Unobserved).map_err(Failure::failed)?;
         let picture = Picture::covering(image, Interpolation::Bilinear, &frame);
         let kernel = KernelTable::new(bn_render::kernel("lanczos2").expect("in the list"));
         let lattice = Hexagonal.sample(4096, Seed::new(1), &Unobserved).map_err(Failure::failed)?;

@@ -109,7 +109,8 @@ impl Subject {
     }
 
     fn new(name: &'static str, scene: Box<dyn Scene>, frame: Frame) -> Outcome<Self> {
-        let made = exact_convolution(&*scene, kernel(), &frame, 1e-6).map_err(Failure::failed)?;
+        let made = exact_convolution(&*scene, kernel(), &frame, 1e-6, &Unobserved)
+            .map_err(Failure::failed)?;
         Ok(Self { name, scene, frame, reference: made.image })
     }
 

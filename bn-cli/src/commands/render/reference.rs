@@ -9,7 +9,7 @@ use bn_samplers::Sampler;
 use serde_json::{Value, json};
 
 use super::super::Global;
-use super::sampling::Tiled;
+use super::sampling::{Tiled, from_render_error};
 use super::scene::Subject;
 use super::{collect, normalization_name};
 use crate::{Failure, Outcome, image_file};
@@ -102,8 +102,9 @@ impl Prepared {
         match self {
             Self::File(image, account) => Ok((image, account)),
             Self::Exact => {
-                let made = exact_convolution(&*subject.scene, kernel, &subject.frame, TOLERANCE)
-                    .map_err(Failure::usage)?;
+                let (scene, frame) = (&*subject.scene, &subject.frame);
+                let made = exact_convolution(scene, kernel, frame, TOLERANCE, observer)
+                    .map_err(from_render_error)?;
                 if !made.converged {
                     global.remark(format!(
                         "the reference may be off by about {:.1e} (root mean square), what {} samples \

@@ -332,8 +332,9 @@ impl Sampling {
                 Ok(Done { stats, fit: Some(fit), adaptive: None })
             }
             Self::Periodic(pattern) => {
-                let (image, samples) =
-                    pattern.render(&*subject.scene, &subject.frame).map_err(Failure::usage)?;
+                let (image, samples) = pattern
+                    .render(&*subject.scene, &subject.frame, observer)
+                    .map_err(from_render_error)?;
                 rows(image.values())?;
                 let stats = RenderStats { samples, evaluated: samples, ..RenderStats::default() };
                 Ok(Done { stats, ..Done::default() })
@@ -372,6 +373,7 @@ impl Tiled {
 pub(super) fn from_render_error(error: RenderError) -> Failure {
     match error {
         RenderError::Output(error) => Failure::from(error),
+        RenderError::Image(error) => Failure::usage(error),
         other => Failure::failed(other),
     }
 }

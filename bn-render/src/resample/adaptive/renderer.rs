@@ -1,9 +1,9 @@
 //! The adaptive renderer: tile by tile, and what it did.
 
 use std::io;
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 
-use bn_core::{Observer, Progress, Unobserved};
+use bn_core::{Observer, Unobserved};
 use rayon::prelude::*;
 
 use super::TILE;
@@ -11,6 +11,7 @@ use super::patches::{Axis, Source};
 use super::progressive::ProgressivePattern;
 use super::tile::{FinishedTile, Task, TileAccount, TileScratch};
 use crate::resample::{Normalization, RenderError};
+use crate::watch::Watch;
 use crate::{Frame, Image, KernelTable, Scene};
 
 /// Renders a scene with as many samples as a wanted error takes, block by block.
@@ -24,9 +25,11 @@ use crate::{Frame, Image, KernelTable, Scene};
 /// *Estimate.* A block's samples are those of its last layer. The layer before is a quarter as dense
 /// and errs independently of it, having its own random shift; 1/√5 of the difference of both is the
 /// error of the last, just so where errors fall as those of independent samples (from some 16 samples
-/// per pixel in that layer on, where normalisation by density is nearly linear; below, a few pixels
-/// whose weights nearly cancel can be worse than stated), and an upper bound where they fall faster:
-/// up to twice the true error for smooth scenes under well-spread patterns.
+/// per pixel in that layer on, where normalisation by density is nearly linear), and an upper bound
+/// where they fall faster: up to twice the true error for smooth scenes under well-spread patterns.
+/// Of pixels with less than a tenth of the expected weight, where independent samples nearly cancel
+/// in a kernel with negative lobes, nothing is believed: windows that hold one are refined as far as
+/// may be, and what is stated leaves such pixels out.
 /// Choosing where to stop by the same estimate makes it a little low, by some percent. Two things it
 /// can't see: what both layers miss (a detail between all samples of a window), and, for lattices,
 /// errors that are the same all over the image, of which one pair of shifts is one draw only (sets
@@ -61,14 +64,16 @@ pub struct AdaptiveStats {
     pub blocks: u64,
     /// Blocks that got more samples than the pilot's.
     pub blocks_refined: u64,
-    /// Blocks whose window is estimated above the wanted error with all samples they may have.
+    /// Blocks whose window is estimated above the wanted error, or holds pixels of which nothing can be
+    /// said, with all samples they may have.
     pub blocks_unresolved: u64,
     /// Pixels with Σ r = 0 under [`Normalization::Density`]: they take the scene's value at their
     /// tile's centre, and are not part of the estimates; their windows are refined as far as may be.
     pub empty_pixels: u64,
     /// Pixels of all tiles that meet the window.
     pub pixels: u64,
-    /// The estimated root mean square error of those of them that two layers reach; NaN if none.
+    /// The estimated root mean square error of those of them that two layers reach, the last with a
+    /// tenth of the expected weight; NaN if none.
     pub error_estimated: f64,
     /// That of the worst window that has such pixels; NaN if none has.
     pub error_worst: f64,
@@ -134,6 +139,7 @@ impl<'a> AdaptiveRenderer<'a> {
         let across = (columns.end - columns.start) as usize;
         // Enough tiles for all threads.
         let at_once = (4 * rayon::current_num_threads()).div_ceil(across) as u32;
+        let watch = Watch::new(observer, window.height.into());
         let mut sum = Sum::default();
         for first in rows.clone().step_by(at_once as usize) {
             let group = first..rows.end.min(first + at_once);
@@ -141,8 +147,11 @@ impl<'a> AdaptiveRenderer<'a> {
                 group.flat_map(|row| columns.clone().map(move |column| (column, row))).collect();
             let finished: Vec<FinishedTile> = places
                 .par_iter()
-                .map_init(TileScratch::default, |scratch, &place| self.tile(place, scratch))
+                .map_init(TileScratch::default, |scratch, &place| self.tile(place, &watch, scratch))
                 .collect();
+            if watch.is_stopped() {
+                return Err(RenderError::Cancelled);
+            }
             for (tiles, places) in finished.chunks(across).zip(places.chunks(across)) {
                 for tile in tiles {
                     sum.add(tile);
@@ -151,23 +160,26 @@ impl<'a> AdaptiveRenderer<'a> {
             }
             let last = places.last().map_or(0, |place| (place.1 + 1) * TILE);
             let done = last.min(window.y + window.height) - window.y;
-            let progress =
-                Progress::new("rendering", u64::from(done), Some(u64::from(window.height)));
-            if let ControlFlow::Break(()) = observer.observe(&progress) {
+            if !watch.reached(done.into()) {
                 return Err(RenderError::Cancelled);
             }
         }
         Ok(sum.stats())
     }
 
-    fn tile(&self, (column, row): (u32, u32), scratch: &mut TileScratch) -> FinishedTile {
+    fn tile(
+        &self,
+        (column, row): (u32, u32),
+        watch: &Watch<'_>,
+        scratch: &mut TileScratch,
+    ) -> FinishedTile {
         let axis = |index: u32, side: u32| {
             let start = index * TILE;
             let pixels = TILE.min(side - start);
             Axis::new(i64::from(start), pixels as usize, self.task.source.table)
         };
         let axes = [axis(column, self.frame.width()), axis(row, self.frame.height())];
-        self.task.render([&axes[0], &axes[1]], scratch)
+        self.task.render([&axes[0], &axes[1]], watch, scratch)
     }
 
     /// The wanted rows of a row of tiles.

@@ -4,7 +4,11 @@ use super::super::renderer::Normalization;
 use super::PATCH;
 use super::patches::{Axis, Patches, Source};
 use super::progressive::ProgressivePattern;
+use crate::watch::{Turn, Watch};
 use crate::{Color, Rect};
+
+/// Pixels with less than this part of the expected weight aren't believed.
+const THIN: f64 = 0.1;
 
 /// What all tiles share.
 #[derive(Clone, Copy)]
@@ -52,6 +56,7 @@ pub(super) struct TileScratch {
     gap: Vec<f64>,
     squares: Vec<Squares>,
     windows: Vec<Squares>,
+    turn: Turn,
 }
 
 /// The estimated squared errors of some pixels.
@@ -60,15 +65,15 @@ struct Squares {
     sum: f64,
     /// Pixels that have an estimate.
     estimated: u32,
-    /// Pixels that no sample reaches.
-    empty: u32,
+    /// Pixels that nothing can be said of: no sample reaches them, or next to none counts.
+    unsure: u32,
 }
 
 impl Squares {
     fn add(&mut self, other: Self) {
         self.sum += other.sum;
         self.estimated += other.estimated;
-        self.empty += other.empty;
+        self.unsure += other.unsure;
     }
 
     /// NaN if nothing is known.
@@ -77,7 +82,7 @@ impl Squares {
     }
 
     fn is_within(self, most: f64) -> bool {
-        self.empty == 0 && self.mean() <= most
+        self.unsure == 0 && self.mean() <= most
     }
 }
 
@@ -86,13 +91,21 @@ enum Known {
     Error(f64),
     /// No sample of the older layer reaches it.
     Nothing,
+    /// The samples of the last layer cancel each other in the kernel: the value is a quotient of small
+    /// numbers.
+    Thin,
     /// No sample of the last layer reaches it.
     Empty,
 }
 
 impl Task<'_> {
-    /// Renders the pixels of `axes`.
-    pub(super) fn render(&self, axes: [&Axis; 2], scratch: &mut TileScratch) -> FinishedTile {
+    /// Renders the pixels of `axes`, as far as it gets if the watch is stopped.
+    pub(super) fn render(
+        &self,
+        axes: [&Axis; 2],
+        watch: &Watch<'_>,
+        scratch: &mut TileScratch,
+    ) -> FinishedTile {
         let [(left, right), (top, bottom)] = axes.map(|axis| axis.span(self.source.table.phase()));
         let reach = Rect::new(left, top, right, bottom);
         // Under plain convolution even constants are noisy.
@@ -106,6 +119,7 @@ impl Task<'_> {
         let reference = self.source.scene.value(reach.center());
         scratch.patches.start(self.source, axes, reference);
         let pilot = scratch.patches.samples;
+        watch.took(pilot as usize, &mut scratch.turn);
         let last = self.source.pattern.levels() - 1;
         let mut finished = FinishedTile::default();
         loop {
@@ -114,8 +128,11 @@ impl Task<'_> {
             judge_windows(axes, self.window_arm(), scratch);
             let mut refined = false;
             for (patch, &window) in scratch.windows.iter().enumerate() {
-                if !window.is_within(self.most_square) && scratch.patches.level(patch) < last {
+                let goes_on = scratch.patches.level(patch) < last && !watch.is_stopped();
+                if goes_on && !window.is_within(self.most_square) {
+                    let before = scratch.patches.samples;
                     scratch.patches.refine(self.source, axes, patch);
+                    watch.took((scratch.patches.samples - before) as usize, &mut scratch.turn);
                     refined = true;
                 }
             }
@@ -208,6 +225,7 @@ impl Task<'_> {
         for pixel in 0..area {
             let weights = (scratch.total[pixel], scratch.gap[pixel]);
             let mut squares = Squares { estimated: 1, ..Squares::default() };
+            let mut is_empty = false;
             for (c, &reference) in reference[..channels].iter().enumerate() {
                 let at = (1 + c) * area + pixel;
                 let values = (scratch.total[at], scratch.gap[at]);
@@ -216,10 +234,14 @@ impl Task<'_> {
                 match known {
                     Known::Error(error) => squares.sum += error * error / channels as f64,
                     Known::Nothing => squares = Squares::default(),
-                    Known::Empty => squares = Squares { empty: 1, ..Squares::default() },
+                    Known::Thin => squares = Squares { unsure: 1, ..Squares::default() },
+                    Known::Empty => {
+                        squares = Squares { unsure: 1, ..Squares::default() };
+                        is_empty = true;
+                    }
                 }
             }
-            finished.account.empty += u64::from(squares.empty);
+            finished.account.empty += u64::from(is_empty);
             let (row, column) = (pixel / width, pixel % width);
             let patch = axes[1].patch_at(row) * axes[0].patches + axes[0].patch_at(column);
             scratch.squares[patch].add(squares);
@@ -245,6 +267,9 @@ impl Task<'_> {
                 let color = reference + value.0 / weight.0;
                 if weight.0 + weight.1 == 0.0 {
                     return (color, Known::Nothing);
+                }
+                if weight.0.abs() < THIN * expected {
+                    return (color, Known::Thin);
                 }
                 let bounded = weight.0.abs().max(0.5 * expected);
                 let gap = (value.1 - value.0 / bounded * weight.1) / bounded;
