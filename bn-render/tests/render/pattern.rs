@@ -126,3 +126,18 @@ fn tiny_tiles_are_read_completely() {
     let pattern = Pattern::tiled(&set, 65_536.0).expect("a pattern");
     assert_eq!(pattern.count_in(&Rect::new(99_999.0, 7.0, 100_000.0, 7.5)), 256 * 128);
 }
+
+/// So many tiles can't be visited.
+#[test]
+fn tiles_of_large_frames_are_counted_together() {
+    let set = PointSet::new(vec![DVec2::new(0.5, 0.25)]).expect("a set");
+    let pattern = Pattern::tiled(&set, 65_536.0).expect("a pattern");
+    let turned = pattern.clone().varied(TileVariation::Turned(Seed::new(1)));
+    for pattern in [pattern, turned] {
+        let frame = Rect::new(0.0, 0.0, 4096.0, 2048.0);
+        assert_eq!(pattern.count_in(&frame), (4096 * 2048) << 16);
+        // Half a tile more of each side, and a place inside the next tile.
+        let crop = Rect::new(-1.9 / 256.0, 0.0, 1000.0, 700.0 + 0.9 / 256.0);
+        assert_eq!(pattern.count_in(&crop), (256_000 + 2) * (179_200 + 1));
+    }
+}
