@@ -35,6 +35,7 @@ mod cell_pairs;
 mod hankel;
 mod measures;
 mod nufft;
+mod panels;
 mod periodogram;
 mod power_image;
 mod radial;

@@ -9,6 +9,7 @@ use bn_core::{PointSet, Seed, Unobserved};
 use bn_samplers::{
     Algorithm, FigureValue, Given, OptionValues, Report, Sample, Sampler as _, SpectrumMatching,
 };
+use bn_spectral::Realizability;
 use clap::{ArgMatches, Args, Command};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
@@ -94,8 +95,10 @@ pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
     let wanted = args.target.target(n, None)?;
     let points = wanted.target.density().points_per_unit_area() as u64;
     output_points::check_total(points, args.sets)?;
-    let (objection, warnings) = wanted.objection();
-    let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    let verdict = Realizability::of(&wanted.target);
+    let objection = wanted.objection(&verdict);
+    let warnings = verdict.warnings.iter().map(ToString::to_string);
+    let warnings: Vec<String> = warnings.filter(|text| Some(text) != objection.as_ref()).collect();
     if let Some(objection) = objection {
         if !args.best_effort && !wanted.is_default {
             let all: Vec<&str> = [&objection].into_iter().chain(&warnings).map(|s| &**s).collect();
@@ -111,7 +114,7 @@ pub(super) fn run(matches: &ArgMatches, global: &Global) -> Outcome {
         global.remark(format!("warning: {warning}"));
     }
     let start = Instant::now();
-    let mut matching = SpectrumMatching::new(wanted.target.clone(), algorithm);
+    let mut matching = SpectrumMatching::new(wanted.target.clone(), algorithm).judged(&verdict);
     matching.start = first;
     let samples = args.samples(&matching, global)?;
     let seconds = start.elapsed().as_secs_f64();

@@ -70,7 +70,7 @@ pub(super) fn run(args: &Realize) -> Outcome {
             "least power  {:10.6} at {:.4} cycles per unit",
             verdict.min_power, verdict.at_nu
         )?;
-        let noise = if verdict.realizable && verdict.min_g < 0.0 {
+        let noise = if verdict.realizable && verdict.min_g < 0.0 && wanted.target.is_measured() {
             ", within the error of a measured spectrum"
         } else {
             ""

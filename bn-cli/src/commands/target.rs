@@ -126,23 +126,22 @@ fn imitated(sets: &[PointSet], name: String, n: Option<u32>) -> Outcome<Wanted> 
 const FEWEST_MODES: f64 = 12.0;
 
 impl Wanted {
-    /// Why nobody should try to match it, and what else is doubtful about it.
-    pub(super) fn objection(&self) -> (Option<String>, Vec<Warning>) {
+    /// Why nobody should try to match it, if there is a reason.
+    pub(super) fn objection(&self, verdict: &Realizability) -> Option<String> {
+        let is_beyond = |warning: &&Warning| matches!(warning, Warning::BeyondHexagonal { .. });
+        let beyond = verdict.warnings.iter().find(is_beyond).map(ToString::to_string);
+        beyond.or_else(|| verdict.reason()).or_else(|| self.too_low())
+    }
+
+    /// Spectra that differ from 1 only where the torus has next to no frequency.
+    fn too_low(&self) -> Option<String> {
         let end = self.target.end();
         let modes = std::f64::consts::PI * end * end;
-        let n = self.target.density().points_per_unit_area();
-        if modes < FEWEST_MODES {
-            let objection = format!(
-                "{n} points are too few: the target differs from 1 only below {end:.3} cycles per \
-                 unit, where the torus has about {modes:.0} modes"
-            );
-            return (Some(objection), Vec::new());
-        }
-        let verdict = Realizability::of(&self.target);
-        let reason = verdict.reason();
-        let is_beyond = |warning: &mut Warning| matches!(warning, Warning::BeyondHexagonal { .. });
-        let mut warnings = verdict.warnings;
-        let beyond = warnings.extract_if(.., is_beyond).next();
-        (beyond.map(|warning| warning.to_string()).or(reason), warnings)
+        (end > 0.0 && modes < FEWEST_MODES).then(|| {
+            format!(
+                "the target differs from 1 only below {end:.3} cycles per unit, where the torus has \
+                 about {modes:.0} modes: too few for a spectrum"
+            )
+        })
     }
 }

@@ -155,7 +155,7 @@ fn unrealizable_targets_are_refused_with_the_reason() {
     folder.file("nan.csv", "nu,power\n0,0\n5,nan\n9,1\n");
     folder.file("unsorted.csv", "nu,power\n5,0\n1,1\n");
     folder.file("close.csv", curve("r,g", 100, 1e-3, |r| if r < 0.01 { -1.0 } else { 1.0 }));
-    let cases: [(&str, &[&str]); 10] = [
+    let cases: [(&str, &[&str]); 12] = [
         ("--target high.csv -n 256", &["high.csv", "the RDF would be -", "--best-effort"]),
         ("--target negative.csv -n 256", &["the power would be -0.5", "--best-effort"]),
         ("--target close.csv -n 256", &["--best-effort"]),
@@ -164,7 +164,9 @@ fn unrealizable_targets_are_refused_with_the_reason() {
         ("--target step --nu0 20 -n 256", &["hexagonal", "17.19"]),
         ("--target step --nu0 9.2 -n 256", &["the RDF would be -0.0"]),
         ("--target step --nu0 nan -n 256", &["nu0"]),
-        ("--target step --nu0 1 -n 2", &["too few"]),
+        ("--target step --nu0 1 -n 2", &["the RDF would be -0.5708"]),
+        ("--target step --nu0 1 -n 4096", &["below 1.000 cycles", "about 3 modes"]),
+        ("--target step --nu0 9.02704 -n 256", &["the RDF would be -1.48e-6"]),
         ("--target single-peak --sigma -1 -n 256", &["sigma"]),
     ];
     for (words, reason) in cases {

@@ -4,6 +4,8 @@ mod buckets;
 mod samples;
 mod variation;
 
+use std::ops::{Range, RangeInclusive};
+
 use bn_core::{DVec2, PointSet};
 use thiserror::Error;
 
@@ -145,51 +147,55 @@ impl Pattern {
     /// samples of a smaller rectangle come in the same order as within a larger one. Cost: some 2
     /// ns for each sample in the rectangle grown by a few samples' distance.
     pub fn samples_in(&self, rect: &Rect, list: &mut SampleList) {
-        let Some([columns, rows]) = self.spans(rect) else { return };
-        for row in rows {
-            for &column in &columns {
-                self.append(rect, &Tile { column, row }, list);
-            }
-        }
+        self.for_each_tile(rect, |tile| self.append(rect, tile, list));
     }
 
     /// The number of samples with `min ≤ (u, v) < max`; the cost is that of the samples along its
-    /// border, and a few ns for each row and column of tiles.
+    /// border, and a few ns for each tile there.
     pub fn count_in(&self, rect: &Rect) -> u64 {
-        let Some([columns, rows]) = self.spans(rect) else { return 0 };
-        let whole: u64 = columns.iter().map(|column| u64::from(column.is_whole())).sum();
-        let cut: Vec<Span> = columns.iter().copied().filter(|column| !column.is_whole()).collect();
-        let (mut count, mut list) = (0, SampleList::default());
-        for row in rows {
-            let looked_at = if row.is_whole() {
-                count += whole * self.points_per_tile() as u64;
-                &cut
-            } else {
-                &columns
-            };
-            for &column in looked_at {
-                list.clear();
-                self.append(rect, &Tile { column, row }, &mut list);
-                count += list.len() as u64;
-            }
+        let Some([columns, rows]) = self.tiles(rect) else { return 0 };
+        let (whole_columns, whole_rows) = (columns.whole(), rows.whole());
+        let length = |whole: &Range<i64>| whole.end.abs_diff(whole.start);
+        let whole = length(&whole_columns).saturating_mul(length(&whole_rows));
+        let mut count = whole.saturating_mul(self.points_per_tile() as u64);
+        let mut list = SampleList::default();
+        let mut add = |a: i64, b: i64| {
+            list.clear();
+            self.append(rect, &columns.tile(&rows, a, b), &mut list);
+            count = count.saturating_add(list.len() as u64);
+        };
+        for b in rows.outside(&whole_rows) {
+            columns.indices.clone().for_each(|a| add(a, b));
+        }
+        for a in columns.outside(&whole_columns) {
+            whole_rows.clone().for_each(|b| add(a, b));
         }
         count
     }
 
-    /// The columns and the rows of tiles that meet the rectangle; nothing if it isn't finite.
-    fn spans(&self, rect: &Rect) -> Option<[Vec<Span>; 2]> {
+    /// Calls `visit` for each tile that meets the rectangle, row by row.
+    fn for_each_tile(&self, rect: &Rect, mut visit: impl FnMut(&Tile)) {
+        let Some([columns, rows]) = self.tiles(rect) else { return };
+        for b in rows.indices.clone() {
+            for a in columns.indices.clone() {
+                visit(&columns.tile(&rows, a, b));
+            }
+        }
+    }
+
+    /// The columns and rows of tiles that meet the rectangle; none if it is no rectangle.
+    fn tiles(&self, rect: &Rect) -> Option<[TileRange; 2]> {
         let (low, high) = (rect.min / self.side, rect.max / self.side);
-        (low.is_finite() && high.is_finite())
-            .then(|| [Span::all(low.x, high.x), Span::all(low.y, high.y)])
+        let finite = low.is_finite() && high.is_finite();
+        finite.then(|| [TileRange::new(low.x, high.x), TileRange::new(low.y, high.y)])
     }
 
     fn append(&self, rect: &Rect, tile: &Tile, list: &mut SampleList) {
         let (xs, ys) = (self.buckets.xs(), self.buckets.ys());
         let weights = self.buckets.weights();
-        let (a, b) = (tile.column.index, tile.row.index);
-        let corner = DVec2::new(a as f64, b as f64);
-        let Some(change) = self.variation.of_tile(a, b) else {
-            for run in self.buckets.runs(tile.column.wanted, tile.row.wanted) {
+        let corner = DVec2::new(tile.a as f64, tile.b as f64);
+        let Some(change) = self.variation.of_tile(tile.a, tile.b) else {
+            for run in self.buckets.runs(tile.x, tile.y) {
                 let points = xs[run.clone()].iter().zip(&ys[run.clone()]);
                 let places = points.map(|(&x, &y)| (corner + DVec2::new(x, y)) * self.side);
                 list.append(rect, places, weights.get(run));
@@ -214,16 +220,6 @@ impl Pattern {
     }
 }
 
-/// An error if this is no number of samples per pixel.
-pub(crate) fn check_rate(samples_per_pixel: f64) -> Result<(), PatternError> {
-    let limit = f64::from(1 << 16);
-    if (1.0 / limit..=limit).contains(&samples_per_pixel) {
-        Ok(())
-    } else {
-        Err(PatternError::SamplesPerPixel { samples_per_pixel })
-    }
-}
-
 /// What a coordinate over a tile's side may be off, with room: relative to the tile's index for
 /// the rounding of the division, and a little more.
 fn slack(index: f64) -> f64 {
@@ -232,38 +228,68 @@ fn slack(index: f64) -> f64 {
 
 fn clamped_sources(change: Change, tile: &Tile) -> [[Interval; 2]; 2] {
     let clamp = |(low, high): Interval| (low.max(0.0), high.min(1.0));
-    change.sources(clamp(tile.column.wanted), clamp(tile.row.wanted))
+    change.sources(clamp(tile.x), clamp(tile.y))
 }
 
 /// A tile, and what is wanted of it in its own coordinates.
 struct Tile {
-    column: Span,
-    row: Span,
+    a: i64,
+    b: i64,
+    x: Interval,
+    y: Interval,
 }
 
-/// A column or row of tiles, and what is wanted of it in its own coordinates.
-#[derive(Clone, Copy)]
-struct Span {
-    index: i64,
-    wanted: Interval,
+/// What is wanted along one axis, in tiles, and the tiles that it meets.
+struct TileRange {
+    low: f64,
+    high: f64,
+    indices: RangeInclusive<i64>,
 }
 
-impl Span {
-    /// Those that meet the interval from `low` to `high`, in sides of a tile.
-    fn all(low: f64, high: f64) -> Vec<Self> {
-        let span = |index: i64| {
-            let slack = slack(index as f64);
-            Self { index, wanted: (low - index as f64 - slack, high - index as f64 + slack) }
-        };
-        let first = (low - slack(low)).floor() as i64;
-        (first..=(high + slack(high)).floor() as i64).map(span).collect()
+impl TileRange {
+    fn new(low: f64, high: f64) -> Self {
+        let indices = (low - slack(low)).floor() as i64..=(high + slack(high)).floor() as i64;
+        Self { low, high, indices }
     }
 
-    /// Whether all of it is wanted, beyond doubt.
-    fn is_whole(&self) -> bool {
-        // The interval is generous by one slack; two more make sure.
-        let (low, high) = self.wanted;
-        let slack = slack(self.index as f64);
+    /// Tile (a, b) of these columns and those rows.
+    fn tile(&self, rows: &Self, a: i64, b: i64) -> Tile {
+        Tile { a, b, x: self.overlap(a), y: rows.overlap(b) }
+    }
+
+    fn overlap(&self, index: i64) -> Interval {
+        let slack = slack(index as f64);
+        (self.low - index as f64 - slack, self.high - index as f64 + slack)
+    }
+
+    /// Whether all of a tile is wanted along this axis, beyond doubt.
+    fn is_whole(&self, index: i64) -> bool {
+        // The intervals are generous by one slack; two more make sure.
+        let (slack, (low, high)) = (slack(index as f64), self.overlap(index));
         low < -3.0 * slack && high > 1.0 + 3.0 * slack
+    }
+
+    /// The tiles that are wanted whole, which lie together. Cost: a few ns for each before and
+    /// after them.
+    fn whole(&self) -> Range<i64> {
+        let end = self.indices.end().saturating_add(1);
+        let first = self.indices.clone().find(|&index| self.is_whole(index));
+        let last = self.indices.clone().rev().find(|&index| self.is_whole(index));
+        first.zip(last).map_or(end..end, |(first, last)| first..last.saturating_add(1))
+    }
+
+    /// The tiles before and after these.
+    fn outside(&self, whole: &Range<i64>) -> impl Iterator<Item = i64> + use<> {
+        (*self.indices.start()..whole.start).chain(whole.end..=*self.indices.end())
+    }
+}
+
+/// Refuses what is no number of samples per pixel.
+pub(crate) fn check_rate(samples_per_pixel: f64) -> Result<(), PatternError> {
+    let limit = f64::from(1 << 16);
+    if (1.0 / limit..=limit).contains(&samples_per_pixel) {
+        Ok(())
+    } else {
+        Err(PatternError::SamplesPerPixel { samples_per_pixel })
     }
 }

@@ -162,10 +162,23 @@ struct Attainable {
     unobjectionable: bool,
 }
 
+impl Attainable {
+    fn of(verdict: &Realizability) -> Self {
+        Self { realizable: verdict.realizable, unobjectionable: verdict.is_unobjectionable() }
+    }
+}
+
 impl SpectrumMatching {
     /// The matching from random points.
     pub fn new(target: Target, algorithm: Algorithm) -> Self {
         Self { target, attainable: OnceLock::new(), algorithm, start: None }
+    }
+
+    /// The same, if what is known of the target's realizability has been found out before: no need to do
+    /// it again.
+    #[must_use]
+    pub fn judged(self, verdict: &Realizability) -> Self {
+        Self { attainable: OnceLock::from(Attainable::of(verdict)), ..self }
     }
 
     /// What to match, at the density of the points to make.
@@ -179,9 +192,8 @@ impl SpectrumMatching {
         if let Some(known) = self.attainable.get() {
             return *known;
         }
-        let verdict = Realizability::of(&self.target);
-        let (realizable, unobjectionable) = (verdict.realizable, verdict.is_unobjectionable());
-        *self.attainable.get_or_init(|| Attainable { realizable, unobjectionable })
+        let attainable = Attainable::of(&Realizability::of(&self.target));
+        *self.attainable.get_or_init(|| attainable)
     }
 
     /// How far `set` is from the target over frequencies up to 6√n; in double precision where single
@@ -289,5 +301,9 @@ mod tests {
         let other = OnceLock::from(Attainable { realizable: false, unobjectionable: false });
         let matching = SpectrumMatching { attainable: other, ..matching };
         assert!(!matching.attainable().realizable);
+        let beyond = Target::step(Density::new(20), 9.0).expect("valid");
+        let verdict = Realizability::of(&beyond);
+        let judged = SpectrumMatching::new(beyond, Algorithm::default()).judged(&verdict);
+        assert!(judged.attainable.get().is_some_and(|known| !known.realizable));
     }
 }

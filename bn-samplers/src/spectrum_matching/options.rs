@@ -69,7 +69,7 @@ const FORCE: [OptionSpec; 4] = [
         kind: OptionKind::Real { min: 0.0, max: 1000.0 },
         default: DefaultValue::Absent("8"),
         help: "force: deviation of the Gaussian that smooths the RDF",
-        unit: "bins of 1/(2n)",
+        unit: "bins of 1/(2n), or of 1/131070 for more than 65535 points",
     },
     OptionSpec {
         name: "patience",

@@ -50,7 +50,7 @@ pub(crate) const METHOD: Method = Method {
             algorithm: Algorithm::from_options(options)?,
         }))
     },
-    version: 2,
+    version: 3,
 };
 
 impl SinglePeak {

@@ -44,7 +44,7 @@ pub(crate) const METHOD: Method = Method {
             algorithm: Algorithm::from_options(options)?,
         }))
     },
-    version: 2,
+    version: 3,
 };
 
 impl Sampler for Step {

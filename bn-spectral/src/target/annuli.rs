@@ -29,6 +29,12 @@ impl Annuli {
         Self { disks: disks.filter(|&(b, height)| b > 0.0 && height != 0.0).collect() }
     }
 
+    /// The annuli between `bounds` with the values that `f` has in their middles.
+    pub(super) fn of(bounds: &[f64], f: impl Fn(f64) -> f64) -> Self {
+        let values: Vec<f64> = bounds.windows(2).map(|b| f(0.5 * (b[0] + b[1]))).collect();
+        Self::new(bounds, &values)
+    }
+
     /// F(u) = 2π ∫ r f(r) J₀(2πru) dr = Σ height·2πb² jinc(2πbu), to a few ε·Σ|height|πb².
     pub(super) fn transform(&self, u: &[f64]) -> Vec<f64> {
         let mut transform = vec![0.0; u.len()];

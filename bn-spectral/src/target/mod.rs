@@ -7,9 +7,9 @@ mod single_peak;
 use bn_core::{Curve, Density, PointSet};
 use thiserror::Error;
 
-use crate::{NufftError, PeriodogramOptions, RadialPower, step_rdf};
+use crate::{NufftError, PeriodogramOptions, RadialPower, panels, step_rdf};
 
-use annuli::{Annuli, steps_between};
+use annuli::Annuli;
 use sampled::{PowerSamples, RdfSamples};
 pub use single_peak::SinglePeak;
 
@@ -50,8 +50,8 @@ pub enum TargetError {
         /// What it was.
         value: f64,
     },
-    /// A value is not a finite number.
-    #[error("value {index} is {value}; a curve needs finite numbers")]
+    /// A value is not a number, or absurdly large.
+    #[error("value {index} is {value:e}; a curve needs numbers within ±1e9")]
     Value {
         /// Its number from 0.
         index: usize,
@@ -74,9 +74,9 @@ pub enum TargetError {
 ///
 /// g(r) = 1 + (2π/n) ∫ ν (P(ν) − 1) J₀(2πνr) dν,  P(ν) = 1 + 2πn ∫ r (g(r) − 1) J₀(2πνr) dr.
 ///
-/// Closed forms are used where they exist: the step; annuli for sampled curves, so narrow that the
-/// transform of each of their linear pieces is good to about 1e-6; Gauss quadrature where a smoothed
-/// peak differs from a constant.
+/// Closed forms are used where they exist, the step and annuli; else Gauss quadrature: for sampled
+/// curves, which are lines between their samples, good to 1e-9 of ∫ ν |P − 1| (of curves that reach beyond
+/// thousands of spacings annuli, so narrow that the transform of each line is good to about 1e-6).
 ///
 /// The values decide where matched points lie: they have the same bits on every CPU.
 ///
@@ -140,7 +140,7 @@ impl Target {
     /// If there are too few or many samples, or they aren't finite and ascending.
     pub fn power_curve(density: Density, samples: &[(f64, f64)]) -> Result<Self, TargetError> {
         check_samples(samples)?;
-        Ok(Self { density, shape: Shape::Power(PowerSamples::new(samples)) })
+        Ok(Self { density, shape: Shape::Power(PowerSamples::new(density, samples)) })
     }
 
     /// The spectrum whose RDF has samples (r, g), r ascending in unit lengths; g before the first
@@ -177,7 +177,7 @@ impl Target {
             ((nu * scale, power), noise)
         };
         let (samples, noise): (Vec<_>, Vec<_>) = rings.map(ring).unzip();
-        let measured = PowerSamples::measured(&samples, noise);
+        let measured = PowerSamples::measured(density, &samples, noise);
         Ok(Self { density, shape: Shape::Power(measured) })
     }
 
@@ -200,8 +200,9 @@ impl Target {
     /// If there is no part or the parts differ in density.
     pub fn product(parts: Vec<Self>) -> Result<Self, TargetError> {
         let density = common_density(parts.iter())?;
-        let shapes = parts.into_iter().map(|part| part.shape).collect();
-        Ok(Self { density, shape: Shape::Product(shapes) })
+        let mut shapes: Vec<Shape> = parts.into_iter().map(|part| part.shape).collect();
+        let shape = if shapes.len() == 1 { shapes.remove(0) } else { Shape::Product(shapes) };
+        Ok(Self { density, shape })
     }
 
     /// The density n that frequencies and distances refer to.
@@ -209,9 +210,12 @@ impl Target {
         self.density
     }
 
-    /// Whether it was measured on point sets: [`Self::imitating`].
+    /// Whether it was measured on point sets, [`Self::imitating`], or a part of it was.
     pub fn is_measured(&self) -> bool {
-        matches!(&self.shape, Shape::Power(samples) if samples.is_measured())
+        self.shape.leaves().iter().any(|(_, leaf)| match leaf {
+            Shape::Power(samples) => samples.is_measured(),
+            _ => false,
+        })
     }
 
     /// P(ν) at ν ≥ 0 cycles per unit, without the point mass at 0.
@@ -237,26 +241,43 @@ impl Target {
     }
 
     /// A curve that ends before it has settled at 1: whether it is of g, its last abscissa, how far its
-    /// last tenth is from 1.
+    /// last tenth is from 1; of several that which is the farthest from 1.
     pub(crate) fn unsettled(&self) -> Option<(bool, f64, f64)> {
-        match &self.shape {
-            Shape::Power(samples) => Some((false, samples.end(), samples.unsettled()?)),
-            Shape::Rdf(samples) => Some((true, samples.farthest(), samples.unsettled()?)),
+        let of = |(weight, leaf): &(f64, &Shape)| match leaf {
+            Shape::Power(samples) => {
+                Some((false, samples.farthest(), weight.abs() * samples.unsettled()?))
+            }
+            Shape::Rdf(samples) => {
+                Some((true, samples.farthest(), weight.abs() * samples.unsettled()?))
+            }
             _ => None,
-        }
+        };
+        let all = self.shape.leaves();
+        all.iter().filter_map(of).max_by(|a, b| a.2.total_cmp(&b.2))
     }
 
-    /// The abscissae of a curve of g, none of other targets.
-    pub(crate) fn rdf_abscissae(&self) -> &[f64] {
-        if let Shape::Rdf(samples) = &self.shape { samples.abscissae() } else { &[] }
+    /// The abscissae of curves of g.
+    pub(crate) fn rdf_abscissae(&self) -> Vec<f64> {
+        let leaves = self.shape.leaves();
+        let of = |(_, leaf): &(f64, &Shape)| match leaf {
+            Shape::Rdf(samples) => samples.abscissae().to_vec(),
+            _ => Vec::new(),
+        };
+        leaves.iter().flat_map(of).collect()
     }
 
-    /// Five standard deviations of the statistical error that g has because P was measured, at `r`.
+    /// Five standard deviations of the statistical error that g has where P was measured, at `r`.
+    /// Parts count as independent, and the other factors of a product as 1.
     pub(crate) fn rdf_uncertainty(&self, r: &[f64]) -> Vec<f64> {
-        match &self.shape {
-            Shape::Power(samples) => samples.rdf_uncertainty(r),
-            _ => vec![0.0; r.len()],
+        let mut squares = vec![0.0; r.len()];
+        for (weight, leaf) in self.shape.leaves() {
+            if let Shape::Power(samples) = leaf {
+                for (square, error) in squares.iter_mut().zip(samples.rdf_uncertainty(r)) {
+                    *square += (weight * error).powi(2);
+                }
+            }
         }
+        squares.into_iter().map(f64::sqrt).collect()
     }
 
     /// Bounds of annuli over which P varies little; jumps and kinks lie on bounds.
@@ -271,6 +292,21 @@ impl Target {
 }
 
 impl Shape {
+    /// What sums and products are made of in the end, and its weight in sums.
+    fn leaves<'a>(&'a self) -> Vec<(f64, &'a Self)> {
+        match self {
+            Self::Sum(parts) => {
+                let weighted = |(weight, part): &'a (f64, Self)| {
+                    let weight = *weight;
+                    part.leaves().into_iter().map(move |(inner, leaf)| (weight * inner, leaf))
+                };
+                parts.iter().flat_map(weighted).collect()
+            }
+            Self::Product(parts) => parts.iter().flat_map(Self::leaves).collect(),
+            leaf => vec![(1.0, leaf)],
+        }
+    }
+
     fn power(&self, nu: f64) -> f64 {
         match self {
             Self::Step(nu0) => f64::from(nu >= *nu0),
@@ -299,12 +335,18 @@ impl Shape {
                 }
                 sum
             }
-            // The transform of a product is a convolution: numerically, from fine annuli.
+            // The transform of a product is a convolution: numerically, between the parts' breaks.
             Self::Product(_) => {
-                let bounds = self.bounds(n);
-                let middle = |pair: &[f64]| self.power(0.5 * (pair[0] + pair[1])) - 1.0;
-                let excess: Vec<f64> = bounds.windows(2).map(middle).collect();
-                Annuli::new(&bounds, &excess).rdf(n, r)
+                let (breaks, farthest) = (self.breaks(n), r.iter().copied().fold(0.0, f64::max));
+                let excess = |nu: f64| self.power(nu) - 1.0;
+                if panels::count(&breaks, farthest) > panels::MOST_NODES {
+                    return Annuli::of(&self.bounds(n), excess).rdf(n, r);
+                }
+                let mut g = panels::transform(&breaks, excess, r);
+                for g in &mut g {
+                    *g = 1.0 + *g / n;
+                }
+                g
             }
         }
     }
@@ -326,7 +368,7 @@ impl Shape {
             Self::Step(nu0) => vec![0.0, *nu0],
             Self::Peak(peak) => peak.bounds(),
             Self::Power(samples) => samples.bounds(n),
-            Self::Rdf(samples) => steps_between(0.0, samples.end(), n.sqrt() / 64.0),
+            Self::Rdf(samples) => samples.frequencies(),
             Self::Sum(parts) => merged(parts.iter().map(|(_, part)| part.bounds(n))),
             Self::Product(parts) => merged(parts.iter().map(|part| part.bounds(n))),
         }
@@ -379,7 +421,7 @@ fn check_samples(samples: &[(f64, f64)]) -> Result<(), TargetError> {
         if !(x > before && x.is_finite()) {
             return Err(TargetError::Abscissa { index, value: x });
         }
-        if !y.is_finite() {
+        if y.is_nan() || y.abs() > HIGHEST {
             return Err(TargetError::Value { index, value: y });
         }
         before = x;

@@ -5,39 +5,58 @@ use std::f64::consts::TAU;
 use bn_core::Density;
 use rayon::prelude::*;
 
-use super::annuli::{Annuli, Ramps, cells, steps_between};
+use super::annuli::{Annuli, Ramps, cells};
 use crate::bessel::j0_slice_alike;
+use crate::panels;
 
 /// A curve counts as settled at 1 if its last tenth is this close to it.
 const SETTLED: f64 = 1e-3;
 /// The deviation of the Gaussian that tapers a measured spectrum, in ends of it: at the end e^−4.5.
 const TAPER: f64 = 1.0 / 3.0;
-/// The spectrum of an RDF is tabulated up to this times √n …
-const HIGHEST: f64 = 16.0;
-/// … in steps of √n over this.
+/// The spectrum of an RDF is tabulated up to this times √n, or where that takes too long to this
+/// at least …
+const HIGHEST: [f64; 2] = [16.0, 2.0];
+/// … in steps of √n over this, …
 const STEPS: f64 = 256.0;
+/// … and this many to a turn of the fastest oscillation, that of the last distance: cubics between
+/// them are good to 4e-5 of its amplitude, …
+const PER_TURN: f64 = 32.0;
+/// … but in so many at most: of curves that reach even farther only the trend is tabulated.
+const MOST_STEPS: f64 = 262_144.0;
+/// Values of J₀ that the table may take: about two seconds.
+const MOST_WORK: f64 = 4e8;
+/// The part of g that the end of a curve may take away without being looked at.
+const NOTHING: f64 = 1e-10;
 
 /// Samples of P at ascending frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PowerSamples {
     nu: Vec<f64>,
     power: Vec<f64>,
+    /// From where on P = 1, but for what doesn't matter to g.
+    end: f64,
     /// Where P was measured: by ring, the number of modes a point times P's standard deviation.
     noise: Option<Vec<f64>>,
 }
 
 impl PowerSamples {
-    pub(super) fn new(samples: &[(f64, f64)]) -> Self {
-        let (nu, power) = samples.iter().copied().unzip();
-        Self { nu, power, noise: None }
+    pub(super) fn new(density: Density, samples: &[(f64, f64)]) -> Self {
+        let (nu, power): (Vec<f64>, Vec<f64>) = samples.iter().copied().unzip();
+        let end = settled_end(&nu, &power, density.points_per_unit_area());
+        Self { nu, power, end, noise: None }
     }
 
     /// Samples that have statistical errors: see the field.
-    pub(super) fn measured(samples: &[(f64, f64)], noise: Vec<f64>) -> Self {
-        Self { noise: Some(noise), ..Self::new(samples) }
+    pub(super) fn measured(density: Density, samples: &[(f64, f64)], noise: Vec<f64>) -> Self {
+        Self { noise: Some(noise), ..Self::new(density, samples) }
     }
 
     pub(super) fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// The last frequency.
+    pub(super) fn farthest(&self) -> f64 {
         self.nu[self.nu.len() - 1]
     }
 
@@ -48,7 +67,7 @@ impl PowerSamples {
 
     /// Where P may have a jump or a kink.
     pub(super) fn breaks(&self) -> Vec<f64> {
-        if self.is_measured() { cells(&self.nu) } else { self.nu.clone() }
+        if self.is_measured() { cells(&self.nu) } else { from_zero(&self.nu) }
     }
 
     /// P − 1 of a curve that wasn't measured.
@@ -60,7 +79,7 @@ impl PowerSamples {
     /// Linear between the samples; of measured rings the mean of the ring at hand, so that means over
     /// rings are what they were: a line through them would cut the tops off narrow peaks.
     pub(super) fn power(&self, nu: f64) -> f64 {
-        if nu > self.end() {
+        if nu > self.farthest() {
             1.0
         } else if self.is_measured() {
             nearest(&self.nu, &self.power, nu)
@@ -84,7 +103,15 @@ impl PowerSamples {
     /// can't make it negative where it wasn't.
     pub(super) fn rdf(&self, n: f64, r: &[f64]) -> Vec<f64> {
         if !self.is_measured() {
-            return self.ramps(n).annuli().rdf(n, r);
+            let (breaks, farthest) = (from_zero(&self.nu), r.iter().copied().fold(0.0, f64::max));
+            if panels::count(&breaks, farthest) > panels::MOST_NODES {
+                return self.ramps(n).annuli().rdf(n, r);
+            }
+            let mut g = panels::transform(&breaks, |nu| self.power(nu) - 1.0, r);
+            for g in &mut g {
+                *g = 1.0 + *g / n;
+            }
+            return g;
         }
         let excess: Vec<f64> =
             self.nu.iter().zip(&self.power).map(|(nu, p)| (p - 1.0) * self.taper(*nu)).collect();
@@ -95,7 +122,7 @@ impl PowerSamples {
         if unsettled(&self.power).is_none() {
             1.0
         } else {
-            libm::exp(-0.5 * (nu / (TAPER * self.end())).powi(2))
+            libm::exp(-0.5 * (nu / (TAPER * self.farthest())).powi(2))
         }
     }
 
@@ -127,9 +154,14 @@ impl RdfSamples {
     pub(super) fn new(density: Density, samples: &[(f64, f64)]) -> Self {
         let n = density.points_per_unit_area();
         let (r, g): (Vec<f64>, Vec<f64>) = samples.iter().copied().unzip();
-        let excess: Vec<f64> = g.iter().map(|g| g - 1.0).collect();
-        let nu = steps_between(0.0, HIGHEST * n.sqrt(), n.sqrt() / STEPS);
-        let mut power = Ramps::new(&r, &excess, 1.0 / n.sqrt()).annuli().transform(&nu);
+        let nu = table(&r, n.sqrt());
+        let breaks = from_zero(&r);
+        let mut power = if panels::count(&breaks, nu[nu.len() - 1]) > panels::MOST_NODES {
+            let excess: Vec<f64> = g.iter().map(|g| g - 1.0).collect();
+            Ramps::new(&r, &excess, 1.0 / n.sqrt()).annuli().transform(&nu)
+        } else {
+            panels::transform(&breaks, |at| interpolate(&r, &g, at) - 1.0, &nu)
+        };
         for power in &mut power {
             *power = 1.0 + n * *power;
         }
@@ -155,19 +187,65 @@ impl RdfSamples {
         self.step * (self.power.len() - 1) as f64
     }
 
+    /// The frequencies of the table.
+    pub(super) fn frequencies(&self) -> Vec<f64> {
+        (0..self.power.len()).map(|i| self.step * i as f64).collect()
+    }
+
+    /// By a cubic through four neighbours; the spectrum is even.
     pub(super) fn power(&self, nu: f64) -> f64 {
         let position = nu / self.step;
-        let i = position as usize;
-        if i + 1 >= self.power.len() {
+        let (i, last) = (position as usize, self.power.len() - 1);
+        if i >= last {
             return 1.0;
         }
         let t = position - i as f64;
-        self.power[i] * (1.0 - t) + self.power[i + 1] * t
+        let before = self.power[if i == 0 { 1 } else { i - 1 }];
+        let (here, next, after) = (self.power[i], self.power[i + 1], self.power[last.min(i + 2)]);
+        let (s, t1, t2) = (1.0 - t, 1.0 + t, 2.0 - t);
+        0.5 * s * t2 * (here * t1 - before * t / 3.0) + 0.5 * t * t1 * (next * t2 - after * s / 3.0)
     }
 
     pub(super) fn rdf(&self, r: f64) -> f64 {
         if r > self.farthest() { 1.0 } else { interpolate(&self.r, &self.g, r) }
     }
+}
+
+/// The frequencies at which the spectrum of a g with samples at `r` is tabulated, at a density of
+/// `root`².
+fn table(r: &[f64], root: f64) -> Vec<f64> {
+    let fine = (1.0 / (PER_TURN * r[r.len() - 1])).min(root / STEPS);
+    let breaks = from_zero(r);
+    let is_too_much = |highest: f64| {
+        let steps = highest / fine;
+        steps > MOST_STEPS || steps * panels::count(&breaks, highest) > 2.0 * MOST_WORK
+    };
+    let mut highest = HIGHEST[0] * root;
+    while is_too_much(highest) && highest > HIGHEST[1] * root {
+        highest *= 0.9;
+    }
+    let step = if highest / fine > MOST_STEPS { root / STEPS } else { fine };
+    let count = (highest / step).ceil().max(1.0) as usize;
+    (0..=count).map(|i| highest * i as f64 / count as f64).collect()
+}
+
+/// From where on a spectrum with these samples is 1, but for less than `NOTHING` of g.
+fn settled_end(nu: &[f64], power: &[f64], n: f64) -> f64 {
+    let mut rest = 0.0;
+    for i in (0..nu.len() - 1).rev() {
+        let excess = (power[i] - 1.0).abs().max((power[i + 1] - 1.0).abs());
+        rest += TAU / n * nu[i + 1] * (nu[i + 1] - nu[i]) * excess;
+        if rest > NOTHING {
+            return nu[i + 1];
+        }
+    }
+    nu[0]
+}
+
+/// The abscissae with 0 before them.
+fn from_zero(x: &[f64]) -> Vec<f64> {
+    let zero = (x[0] > 0.0).then_some(0.0);
+    zero.into_iter().chain(x.iter().copied()).collect()
 }
 
 /// The largest distance from 1 in the last tenth, if it is one that matters.

@@ -6,12 +6,15 @@ use bn_core::{Curve, Density};
 
 use super::annuli::{Annuli, steps_between};
 use super::{TargetError, check};
-use crate::HankelPlan;
+use crate::{HankelPlan, panels};
 
 /// Standard deviations from its centre beyond which a Gaussian counts as 0: 1.1e-19 of it is there.
 const REACH: f64 = 9.0;
-/// Oscillations of a Bessel function over the slopes of P up to which it is integrated by quadrature.
-const MOST_TURNS: f64 = 1e4;
+/// Oscillations of a Bessel function over the slopes of P from which on the faster of two quadratures,
+/// in steps of σ over this, …
+const STEPS: f64 = 4.0;
+/// … takes the place of the more accurate one.
+const MANY_TURNS: f64 = 100.0;
 /// A Gaussian narrower than this part of ν₀ + width counts as none: it changes g by less than its
 /// square.
 const SHARP: f64 = 1e-8;
@@ -51,7 +54,21 @@ impl SinglePeak {
 
     /// The spectrum as the authors' program tabulates it: in bins of half a cycle over [0, n/2), the
     /// two bins from `nu0` (a whole number of cycles) on have `height`, then all is smoothed by a
-    /// Gaussian of `sigma_bins` bins. Abscissae are the bins' lower edges.
+    /// Gaussian of `sigma_bins` bins. Abscissae are the bins' lower edges; as a target, values belong to
+    /// the bins' middles:
+    ///
+    /// ```
+    /// use bn_core::Density;
+    /// use bn_spectral::{SinglePeak, Target};
+    ///
+    /// let density = Density::new(4096);
+    /// let table = SinglePeak::tabulated(density, 60, 20.0, 5.0);
+    /// let samples: Vec<(f64, f64)> = table.iter().map(|(nu, p)| (nu + 0.25, p)).collect();
+    /// let target = Target::power_curve(density, &samples)?;
+    /// let ours = SinglePeak::thesis(density);
+    /// assert!((target.power(62.0) - ours.power(62.0)).abs() < 0.02);
+    /// # Ok::<(), bn_spectral::TargetError>(())
+    /// ```
     ///
     /// # Panics
     /// If `sigma_bins` is negative or not finite.
@@ -119,7 +136,9 @@ impl SinglePeak {
         bounds
     }
 
-    /// g(r) at density `n`, to about 1e-12: annuli where P is constant, quadrature in between.
+    /// g(r) at density `n`: annuli where P is constant, quadrature in between. To about 1e-12 of the
+    /// slopes' share, or 1e-9 where σ is many times 1/r,
+    /// or what annuli of σ/16 make of it where even that takes too long.
     pub(super) fn rdf(self, n: f64, r: &[f64]) -> Vec<f64> {
         let top = self.peak / self.width;
         if self.is_sharp() {
@@ -127,11 +146,10 @@ impl SinglePeak {
         }
         let slopes = self.slopes();
         let length: f64 = slopes.iter().map(|(from, to)| to - from).sum();
-        if length * r.iter().copied().fold(0.0, f64::max) > MOST_TURNS {
-            let bounds = self.bounds();
-            let middle = |pair: &[f64]| self.power(0.5 * (pair[0] + pair[1])) - 1.0;
-            let excess: Vec<f64> = bounds.windows(2).map(middle).collect();
-            return Annuli::new(&bounds, &excess).rdf(n, r);
+        let farthest = r.iter().copied().fold(0.0, f64::max);
+        let is_long = length * farthest > MANY_TURNS;
+        if panels::count(&[0.0, length], farthest) > panels::MOST_NODES {
+            return Annuli::of(&self.bounds(), |nu| self.power(nu) - 1.0).rdf(n, r);
         }
         let mut g = match slopes[..] {
             [(from, below), (above, _)] => {
@@ -140,9 +158,14 @@ impl SinglePeak {
             _ => Annuli::new(&[0.0, slopes[0].0], &[-1.0]).rdf(n, r),
         };
         for (from, to) in slopes {
-            // The Gaussian is as smooth as 16 Gauss nodes can be asked for over 2σ.
-            let plan = HankelPlan::alike(&[from, to], PI / 2.0 * self.sigma, r);
-            for (g, band) in g.iter_mut().zip(plan.transform(|nu| self.power(nu) - 1.0)) {
+            let excess = |nu: f64| self.power(nu) - 1.0;
+            let bands = if is_long {
+                panels::transform(&steps_between(from, to, self.sigma / STEPS), excess, r)
+            } else {
+                // The Gaussian is as smooth as 16 Gauss nodes can be asked for over 2σ.
+                HankelPlan::alike(&[from, to], PI / 2.0 * self.sigma, r).transform(excess)
+            };
+            for (g, band) in g.iter_mut().zip(bands) {
                 *g += band / n;
             }
         }

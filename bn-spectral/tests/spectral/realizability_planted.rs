@@ -1,7 +1,9 @@
 //! Realizability of spectra whose answer is known.
 
 use bn_core::{DVec2, Density, PointSet, Seed};
-use bn_spectral::{Realizability, SinglePeak, Target, Warning, feasible_region, highest_step};
+use bn_spectral::{
+    Realizability, SinglePeak, Target, TargetError, Warning, feasible_region, highest_step,
+};
 use rand::RngExt as _;
 
 const N: usize = 4096;
@@ -46,8 +48,100 @@ fn lattices_exist() {
         let set = PointSet::new((0..across * down).map(place).collect()).expect("valid");
         let n = set.len();
         let verdict = Realizability::of(&Target::imitating(&[set], n).expect("measurable"));
-        assert!(verdict.realizable, "{verdict:?}");
+        assert!(verdict.realizable && verdict.warnings.is_empty(), "{verdict:?}");
     }
+}
+
+/// A thin ring of g at r₀ adds A·J₀(2πνr₀) to P: the mirror of the ring of power, at distances where P
+/// turns many times a spacing.
+#[test]
+fn a_ring_of_neighbours_takes_power_away() {
+    for (n, r0, a, want) in [
+        (4096, 0.45, 2.46, true),
+        (4096, 0.45, 2.51, false),
+        (4096, 0.02, 2.46, true),
+        (4096, 0.02, 2.51, false),
+        (4096, 0.02, 6.0, false),
+        (65_536, 0.49, 6.0, false),
+    ] {
+        let half = 0.001_f64.min(0.02 * r0);
+        // A triangle's second moment shifts the mean of r J₀ by (half/r₀)²/6.
+        let height = a / (std::f64::consts::TAU * n as f64 * r0 * half);
+        let samples = [(r0 - half, 1.0), (r0, 1.0 + height), (r0 + half, 1.0)];
+        let target = Target::rdf_curve(Density::new(n), &samples).expect("valid");
+        let verdict = Realizability::of(&target);
+        let least = 1.0 - 0.402_759_4 * a;
+        assert_eq!(verdict.realizable, want, "{n}, {r0}, {a}: {verdict:?}");
+        assert!((verdict.min_power - least).abs() < 1e-3 * a, "{n}, {r0}, {a}: {verdict:?}");
+        let first = 3.831_706 / (std::f64::consts::TAU * r0);
+        assert!((verdict.at_nu - first).abs() < 0.02 * first, "{n}, {r0}, {a}: {verdict:?}");
+    }
+}
+
+/// Samples that say nothing new change nothing: many on a line, and one of 1 far beyond the last.
+#[test]
+fn verdicts_are_about_functions_not_samples() {
+    let ring = |c: f64| {
+        let height = 1.0 + c * N as f64 / (std::f64::consts::TAU * 192.0) / 0.02;
+        vec![(191.97, 1.0), (191.98, 1.0), (192.0, height), (192.02, 1.0), (192.03, 1.0)]
+    };
+    for (c, want) in [(2.47, true), (2.52, false)] {
+        let mut samples = ring(c);
+        let near = Realizability::of(&Target::power_curve(density(), &samples).expect("valid"));
+        samples.push((1e7, 1.0));
+        let far = Realizability::of(&Target::power_curve(density(), &samples).expect("valid"));
+        assert!(near.realizable == want && far.realizable == want, "{near:?} {far:?}");
+        assert!((near.min_g - far.min_g).abs() < 1e-6, "{near:?} {far:?}");
+    }
+    // A narrow peak above an empty region: few samples, and thousands on the same lines.
+    let corners = [(0.0, 0.0), (51.2, 0.0), (51.21, 400.0), (51.22, 1.0), (60.0, 1.0)];
+    let mut many = Vec::new();
+    for pair in corners.windows(2) {
+        let ((x, p), (y, q)) = (pair[0], pair[1]);
+        many.extend(
+            (0..2000).map(|i| f64::from(i) / 2000.0).map(|t| (x + (y - x) * t, p + (q - p) * t)),
+        );
+    }
+    many.push((60.0, 1.0));
+    let [few, many] = [&corners[..], &many[..]]
+        .map(|samples| Realizability::of(&Target::power_curve(density(), samples).expect("valid")));
+    assert!((few.min_g - many.min_g).abs() < 1e-6, "{few:?} {many:?}");
+    assert_eq!(few.warnings.len(), many.warnings.len(), "{few:?} {many:?}");
+}
+
+/// A sum of one part, and a product of one, is that part.
+#[test]
+fn combinations_of_one_part_are_that_part() {
+    let set = |seed| {
+        let mut rng = Seed::new(seed).stream(0);
+        let points = (0..200).map(|_| DVec2::new(rng.random(), rng.random()));
+        PointSet::new(points.collect()).expect("valid")
+    };
+    let density = Density::new(200);
+    let peak = SinglePeak::thesis(density);
+    let measured = |seed| Target::imitating(&[set(seed)], 200).expect("measurable");
+    for target in [
+        Target::step(density, 7.0).expect("valid"),
+        Target::single_peak(density, peak).expect("valid"),
+        Target::power_curve(density, &[(0.0, 0.0), (7.0, 0.0)]).expect("valid"),
+        Target::rdf_curve(density, &[(0.0, 0.0), (0.03, 0.5)]).expect("valid"),
+        measured(1),
+    ] {
+        let want = Realizability::of(&target);
+        for one in [Target::sum(vec![(1.0, target.clone())]), Target::product(vec![target.clone()])]
+        {
+            let one = one.expect("a part");
+            assert_eq!(one.is_measured(), target.is_measured());
+            let got = Realizability::of(&one);
+            assert_eq!((got.realizable, &got.warnings), (want.realizable, &want.warnings));
+            assert!((got.min_power - want.min_power).abs() < 1e-9, "{got:?} {want:?}");
+            assert!((got.min_g - want.min_g).abs() < 1e-4, "{got:?} {want:?}");
+        }
+    }
+    // What two measured spectra scatter by is allowed for in their mean, too.
+    let mean = Target::sum(vec![(0.5, measured(1)), (0.5, measured(2))]).expect("alike");
+    let verdict = Realizability::of(&mean);
+    assert!(verdict.realizable && mean.is_measured(), "{verdict:?}");
 }
 
 #[test]
@@ -287,8 +381,10 @@ fn neighbouring_numbers_are_no_obstacle() {
     assert!(
         Realizability::of(&Target::rdf_curve(density(), &samples).expect("valid")).min_g == 0.0
     );
-    let tiny = [(0.0, 1e300), (5e-324, -1e300), (1e-323, 1.0), (1e300, 1.0)];
+    let tiny = [(0.0, 1e9), (5e-324, -1e9), (1e-323, 1.0), (1e300, 1.0)];
     for target in [Target::power_curve, Target::rdf_curve].map(|of| of(density(), &tiny)) {
         assert!(!Realizability::of(&target.expect("valid")).realizable);
     }
+    let absurd = Target::power_curve(density(), &[(0.0, 1.0), (1.0, 1.1e9)]);
+    assert_eq!(absurd, Err(TargetError::Value { index: 1, value: 1.1e9 }));
 }

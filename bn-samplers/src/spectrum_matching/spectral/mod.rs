@@ -238,7 +238,10 @@ impl Search<'_> {
             let progress = Progress::new(stage, done, Some(budget.into()));
             observe(self.observer, &progress.with_figures(&figures))?;
             let iteration = self.before + (history.len() - 1) as u64;
-            self.observer.iterated(iteration, &|| places(search.x()));
+            // Where a stage begins, the one before has ended.
+            if history.len() > 1 || self.number == 0 {
+                self.observer.iterated(iteration, &|| places(search.x()));
+            }
             let earlier = history.len().checked_sub(PATIENCE + 1).map(|i| history[i]);
             if self.goal.is_met(value, rms) {
                 break End::Tolerance;
