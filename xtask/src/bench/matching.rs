@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use bn_cli::{Failure, Outcome};
 use bn_core::{DVec2, Density, Observer, PointSet, Progress, Seed};
 use bn_samplers::{Algorithm, SampleError, Sampler as _, SpectrumMatching};
-use bn_spectral::{Target, highest_step};
+use bn_spectral::{Target, WindowedSpectrum, highest_step};
 
 use super::chapter::{Chapter, Curve, Diagram, Value};
 use super::{Effort, SEED};
@@ -31,6 +31,7 @@ const COLUMNS: &[&str] = &[
     "ended after / s",
     "rms",
     "power below the step",
+    "Omega by the RDF",
 ];
 
 pub(super) fn measure(effort: Effort) -> Outcome<Chapter> {
@@ -54,7 +55,9 @@ pub(super) fn measure(effort: Effort) -> Outcome<Chapter> {
         method: "Step blue noise at its highest frequency, one set from the same random points for all \
                  algorithms, all threads. The error is the root mean square of ring means less the \
                  target over all modes up to 6 sqrt(n): what the last state not later than a moment \
-                 has. A run is ended after 31 s."
+                 has. Algorithms that match the RDF leave the scatter of single rings, 0.12 at 1024 \
+                 random points, as it is: what they reach shows in the power below the step, and in the \
+                 oscillation Omega by the windowed RDF. A run is ended after 31 s."
             .to_owned(),
         columns: COLUMNS,
         rows,
@@ -74,6 +77,8 @@ struct Run {
     places: Vec<Place>,
     /// Whether it came to its own end.
     ended: bool,
+    /// Ω of its last state, by the windowed RDF.
+    omega: Option<f64>,
 }
 
 impl Run {
@@ -90,13 +95,18 @@ impl Run {
         if ended {
             states.push((total, result.map_err(failed)?.points.into_points()));
         }
+        let last = states.last().map(|(_, points)| PointSet::new(points.clone()));
+        let last = last.transpose().map_err(Failure::failed)?;
+        let spectrum = last.map(|set| WindowedSpectrum::of(&[set])).transpose();
+        let omega = spectrum.map_err(Failure::failed)?.and_then(|s| s.oscillation());
         let place = |(time, points): (Duration, Vec<DVec2>)| {
             let set = PointSet::new(points).map_err(Failure::failed)?;
             let residual = matching.residual(&set).map_err(failed)?;
             let (rms, empty_power) = (residual.rms, residual.empty_power);
             Ok(Place { seconds: time.as_secs_f64(), rms, empty_power })
         };
-        Ok(Self { places: states.into_iter().map(place).collect::<Outcome<_>>()?, ended })
+        let places = states.into_iter().map(place).collect::<Outcome<_>>()?;
+        Ok(Self { places, ended, omega })
     }
 
     fn row(&self, name: &str, n: usize) -> Vec<Value> {
@@ -107,6 +117,7 @@ impl Run {
         row.push(last.filter(|_| self.ended).map(|place| place.seconds).into());
         row.push(last.map(|place| place.rms).into());
         row.push(last.map(|place| place.empty_power).into());
+        row.push(self.omega.into());
         row
     }
 }

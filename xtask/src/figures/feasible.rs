@@ -17,6 +17,8 @@ const POINTS: usize = 4096;
 const SIGMAS: [f64; 4] = [0.5, 2.5, 5.0, 8.0];
 /// Width of the peak before it is smoothed.
 const WIDTH: f64 = 0.25;
+/// Halvings of a step of ν₀ in search of the highest.
+const BISECTIONS: usize = 12;
 /// The greatest p₀ shown, in cycles.
 const MOST_POWER: f64 = 45.0;
 
@@ -45,8 +47,8 @@ fn draw(studio: &Studio) -> Outcome {
     }
     let right = panels.split_off(2);
     let text = format!(
-        "Between the curves min *P* ≥ 0 and min *g* ≥ 0, at {POINTS} points; for *n* points *ν*_{{0}}, *p*_{{0}} and *σ* scale \
-         with √*n*. Highest realizable *ν*_{{0}}/*ν*_{{max}}: {}.",
+        "Between the curves min *P* ≥ 0 and min *g* ≥ 0, at {POINTS} points, for a peak {WIDTH} cycles wide before it is \
+         smoothed; for *n* points *ν*_{{0}}, *p*_{{0}}, *σ* and the width scale with √*n*. Highest realizable *ν*_{{0}}/*ν*_{{max}}: {}.",
         ends.join(", ")
     );
     let page = Page::new()
@@ -66,10 +68,26 @@ fn steps(from: f64, to: f64, count: usize) -> Vec<f64> {
 fn boundaries(nus: &[f64], sigma: f64) -> Outcome<[Vec<[f64; 2]>; 2]> {
     let highest = highest_step(POINTS as f64);
     let (mut low, mut high) = (Vec::new(), Vec::new());
-    for &nu in nus {
-        if let Some((least, most)) = powers(nu * highest, sigma)? {
+    let mut add = |nu: f64| -> Outcome<bool> {
+        let range = powers(nu * highest, sigma)?;
+        if let Some((least, most)) = range {
             low.push([nu, least]);
             high.push([nu, most]);
+        }
+        Ok(range.is_some())
+    };
+    for pair in nus.windows(2) {
+        let (mut inside, mut outside) = (pair[0], pair[1]);
+        if !add(inside)? {
+            break;
+        }
+        // Where the curves meet is found by bisection.
+        if powers(outside * highest, sigma)?.is_none() {
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (inside + outside);
+                if add(middle)? { inside = middle } else { outside = middle }
+            }
+            break;
         }
     }
     Ok([low, high])
@@ -100,6 +118,15 @@ fn powers(nu0: f64, sigma: f64) -> Outcome<Option<(f64, f64)>> {
 mod tests {
     use super::*;
     use bn_spectral::Realizability;
+
+    #[test]
+    fn curves_meet_at_the_highest_frequency() {
+        let [low, high] = boundaries(&steps(0.9, 1.7, 5), 2.5).expect("valid");
+        let (low, high) = (low[low.len() - 1], high[high.len() - 1]);
+        assert!(high[1] >= low[1] && high[1] - low[1] < 1.0, "{low:?} {high:?}");
+        let beyond = (low[0] + 0.2 / f64::from(1 << BISECTIONS)) * highest_step(POINTS as f64);
+        assert!(powers(beyond, 2.5).expect("valid").is_none());
+    }
 
     #[test]
     fn boundaries_are_those_of_the_verdict() {
