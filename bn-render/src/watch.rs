@@ -32,6 +32,11 @@ impl<'a> Watch<'a> {
         self.goes_on()
     }
 
+    /// Adds to the steps that are done.
+    pub(crate) fn advanced(&self, steps: usize) {
+        self.done.fetch_add(steps as u64, Ordering::Relaxed);
+    }
+
     /// Tells that a thread took so many samples more, and asks now and then; whether to go on.
     pub(crate) fn took(&self, samples: usize, turn: &mut Turn) -> bool {
         turn.0 += samples;

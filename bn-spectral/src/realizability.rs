@@ -14,8 +14,8 @@ const REACH: f64 = 14.0;
 const STEPS: f64 = 100.0;
 /// The most radii in such steps …
 const MOST_RADII: f64 = 16_000.0;
-/// … and those over the rest, if they don't reach: of spectra that reach absurdly far, whose g is all
-/// but decided near 0.
+/// … and those over the rest, if they don't reach: of spectra that reach far at this density, whose g is
+/// all but decided within the first spacings.
 const FAR_RADII: u32 = 500;
 /// What a number variance may lack of its bound: curves are known to so many digits.
 const LACK: f64 = 2e-3;
@@ -133,7 +133,7 @@ impl std::fmt::Display for Warning {
 
 impl Realizability {
     /// Checks a target. Some ten milliseconds as a rule; O((samples + ½·range of frequencies) · radii), up
-    /// to 16,000 radii, for those that reach far: some seconds.
+    /// to 16,000 radii, for those that reach far: some ten seconds at most.
     pub fn of(target: &Target) -> Self {
         let (min_power, at_nu) = least_power(target);
         let (min_g, at_r, tolerance) = least_g(target);

@@ -247,6 +247,7 @@ fn evaluated(
         .zip(places.v().par_chunks(CHUNK))
         .map_init(Turn::default, |turn, (u, v)| {
             let mut out = vec![0.0; channels * u.len()];
+            watch.advanced(u.len());
             if watch.took(u.len(), turn) {
                 scene.values(u, v, &mut out);
             }

@@ -73,7 +73,7 @@ impl ImageSpectrum {
     /// borders don't fit add power along the axes.
     ///
     /// Powers are good to 1e-14 of the image's. Cost: an FFT of the image's size for each channel, and
-    /// some 40 bytes a pixel.
+    /// up to 80 bytes a pixel.
     pub fn of_image(image: &Image, frame: &Frame) -> Self {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let mut planner = Planner::<f64>::new();

@@ -146,6 +146,11 @@ fn pixels_of_next_to_no_weight_are_not_believed() {
         let ratio = truth / stats.error_estimated;
         assert!((0.7..1.3).contains(&ratio), "{truth} {stats:?}");
     }
+    // Where the sum of the weights is negative, the quotient has the wrong sign.
+    let (image, sparse) =
+        adaptive(&scene, &frame, &progressive(&random_set(4096, 1), 1.0, 5000.0), how, 0.1);
+    let truth = mean_square_error(&image, &exact).expect("same shape").sqrt();
+    assert!((0.7..1.3).contains(&(truth / sparse.error_estimated)), "{truth} {sparse:?}");
     let (_, spread) =
         adaptive(&scene, &frame, &progressive(&jittered_set(64, 1), 4.0, 4.0), how, 1.0);
     assert_eq!(spread.blocks_unresolved, 0, "{spread:?}");

@@ -74,16 +74,19 @@ fn dense_rendering_stops_within_a_band() {
 #[test]
 fn adaptive_rendering_stops_within_a_group_of_tiles() {
     let frame = Frame::new(256, 256).expect("a size");
-    let pattern = ProgressivePattern::new(&random_set(1024, 1), 64.0, 4096.0, Seed::new(1));
-    let pattern = pattern.expect("rates");
-    let (scene, table) = (Counted::default(), KernelTable::new(kernel("box").expect("a kernel")));
-    on_two_threads(|| {
-        let how = Normalization::Density;
-        let renderer = AdaptiveRenderer::new(&scene, &pattern, &table, how, &frame, 1e-6);
-        let stopped = renderer.stream(&StopsAt::call(1), |_| Ok(()));
-        assert!(matches!(stopped, Err(RenderError::Cancelled)));
-    });
-    assert!((1..A_FEW_MILLIONS).contains(&scene.count()), "{}", scene.count());
+    for pilot in [64.0, 4096.0] {
+        let pattern = ProgressivePattern::new(&random_set(1024, 1), pilot, 4096.0, Seed::new(1));
+        let pattern = pattern.expect("rates");
+        let (scene, table) =
+            (Counted::default(), KernelTable::new(kernel("box").expect("a kernel")));
+        on_two_threads(|| {
+            let how = Normalization::Density;
+            let renderer = AdaptiveRenderer::new(&scene, &pattern, &table, how, &frame, 1e-6);
+            let stopped = renderer.stream(&StopsAt::call(1), |_| Ok(()));
+            assert!(matches!(stopped, Err(RenderError::Cancelled)));
+        });
+        assert!((1..A_FEW_MILLIONS).contains(&scene.count()), "{}", scene.count());
+    }
 }
 
 #[test]

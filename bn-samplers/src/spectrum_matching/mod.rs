@@ -174,8 +174,8 @@ impl SpectrumMatching {
         Self { target, attainable: OnceLock::new(), algorithm, start: None }
     }
 
-    /// The same, if what is known of the target's realizability has been found out before: no need to do
-    /// it again.
+    /// The same with the verdict on its target, which must be just that, if it has been found before: the
+    /// weights depend on it.
     #[must_use]
     pub fn judged(self, verdict: &Realizability) -> Self {
         Self { attainable: OnceLock::from(Attainable::of(verdict)), ..self }

@@ -338,7 +338,7 @@ impl Shape {
             // The transform of a product is a convolution: numerically, between the parts' breaks.
             Self::Product(_) => {
                 let (breaks, farthest) = (self.breaks(n), r.iter().copied().fold(0.0, f64::max));
-                let excess = |nu: f64| self.power(nu) - 1.0;
+                let excess = |nu: f64| self.tapered(nu);
                 if panels::count(&breaks, farthest) > panels::MOST_NODES {
                     return Annuli::of(&self.bounds(n), excess).rdf(n, r);
                 }
@@ -348,6 +348,18 @@ impl Shape {
                 }
                 g
             }
+        }
+    }
+
+    /// P − 1, that of measured spectra tapered as their RDF takes it.
+    fn tapered(&self, nu: f64) -> f64 {
+        match self {
+            Self::Power(samples) => samples.tapered(nu),
+            Self::Sum(parts) => parts.iter().map(|(w, part)| w * part.tapered(nu)).sum(),
+            Self::Product(parts) => {
+                parts.iter().map(|part| 1.0 + part.tapered(nu)).product::<f64>() - 1.0
+            }
+            other => other.power(nu) - 1.0,
         }
     }
 

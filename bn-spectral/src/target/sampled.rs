@@ -25,7 +25,7 @@ const PER_TURN: f64 = 32.0;
 const MOST_STEPS: f64 = 262_144.0;
 /// Values of J₀ that the table may take: about two seconds.
 const MOST_WORK: f64 = 4e8;
-/// The part of g that the end of a curve may take away without being looked at.
+/// The part of its transform that the end of a curve may take away without being looked at.
 const NOTHING: f64 = 1e-10;
 
 /// Samples of P at ascending frequencies.
@@ -118,6 +118,12 @@ impl PowerSamples {
         Annuli::new(&cells(&self.nu), &excess).rdf(n, r)
     }
 
+    /// P − 1 as [`Self::rdf`] takes it.
+    pub(super) fn tapered(&self, nu: f64) -> f64 {
+        let excess = self.power(nu) - 1.0;
+        if self.is_measured() { excess * self.taper(nu) } else { excess }
+    }
+
     fn taper(&self, nu: f64) -> f64 {
         if unsettled(&self.power).is_none() {
             1.0
@@ -154,9 +160,15 @@ impl RdfSamples {
     pub(super) fn new(density: Density, samples: &[(f64, f64)]) -> Self {
         let n = density.points_per_unit_area();
         let (r, g): (Vec<f64>, Vec<f64>) = samples.iter().copied().unzip();
-        let nu = table(&r, n.sqrt());
-        let breaks = from_zero(&r);
-        let mut power = if panels::count(&breaks, nu[nu.len() - 1]) > panels::MOST_NODES {
+        // What lies beyond says nothing, and would only make the table finer.
+        let end = settled_end(&r, &g, 1.0 / n);
+        let breaks: Vec<f64> = from_zero(&r).into_iter().filter(|&r| r <= end).collect();
+        if breaks.len() < 2 {
+            return Self { r, g, step: n.sqrt(), power: vec![1.0; 2] };
+        }
+        let nu = table(&breaks, n.sqrt());
+        let work = nu.len() as f64 * panels::count(&breaks, nu[nu.len() - 1]);
+        let mut power = if work > 4.0 * MOST_WORK {
             let excess: Vec<f64> = g.iter().map(|g| g - 1.0).collect();
             Ramps::new(&r, &excess, 1.0 / n.sqrt()).annuli().transform(&nu)
         } else {
@@ -213,33 +225,39 @@ impl RdfSamples {
 
 /// The frequencies at which the spectrum of a g with samples at `r` is tabulated, at a density of
 /// `root`².
-fn table(r: &[f64], root: f64) -> Vec<f64> {
-    let fine = (1.0 / (PER_TURN * r[r.len() - 1])).min(root / STEPS);
-    let breaks = from_zero(r);
+fn table(breaks: &[f64], root: f64) -> Vec<f64> {
+    let fine = (1.0 / (PER_TURN * breaks[breaks.len() - 1])).min(root / STEPS);
     let is_too_much = |highest: f64| {
         let steps = highest / fine;
-        steps > MOST_STEPS || steps * panels::count(&breaks, highest) > 2.0 * MOST_WORK
+        steps > MOST_STEPS || steps * panels::count(breaks, highest) > 2.0 * MOST_WORK
     };
     let mut highest = HIGHEST[0] * root;
     while is_too_much(highest) && highest > HIGHEST[1] * root {
         highest *= 0.9;
     }
-    let step = if highest / fine > MOST_STEPS { root / STEPS } else { fine };
+    let step = if is_too_much(highest) {
+        highest = HIGHEST[0] * root;
+        root / STEPS
+    } else {
+        fine
+    };
     let count = (highest / step).ceil().max(1.0) as usize;
     (0..=count).map(|i| highest * i as f64 / count as f64).collect()
 }
 
-/// From where on a spectrum with these samples is 1, but for less than `NOTHING` of g.
-fn settled_end(nu: &[f64], power: &[f64], n: f64) -> f64 {
+/// From where on a curve with these samples is 1, but for less than `NOTHING` of its transform: of P,
+/// g with `unit` = n, and the reverse with 1/n. 0 if it is 1 all along.
+fn settled_end(x: &[f64], y: &[f64], unit: f64) -> f64 {
     let mut rest = 0.0;
-    for i in (0..nu.len() - 1).rev() {
-        let excess = (power[i] - 1.0).abs().max((power[i + 1] - 1.0).abs());
-        rest += TAU / n * nu[i + 1] * (nu[i + 1] - nu[i]) * excess;
+    for i in (0..x.len() - 1).rev() {
+        let excess = (y[i] - 1.0).abs().max((y[i + 1] - 1.0).abs());
+        rest += TAU / unit * x[i + 1] * (x[i + 1] - x[i]) * excess;
         if rest > NOTHING {
-            return nu[i + 1];
+            return x[i + 1];
         }
     }
-    nu[0]
+    let first = TAU / unit * x[0] * x[0] * (y[0] - 1.0).abs();
+    if rest + first > NOTHING { x[0] } else { 0.0 }
 }
 
 /// The abscissae with 0 before them.

@@ -93,6 +93,22 @@ fn verdicts_are_about_functions_not_samples() {
         assert!(near.realizable == want && far.realizable == want, "{near:?} {far:?}");
         assert!((near.min_g - far.min_g).abs() < 1e-6, "{near:?} {far:?}");
     }
+    // The same of g, whose table is as fine as its last distance asks for.
+    for far in [None, Some(0.5), Some(64.0)] {
+        let height = 6.0 / (std::f64::consts::TAU * N as f64 * 0.002 * 5e-5);
+        let mut samples = vec![(0.00195, 1.0), (0.002, 1.0 + height), (0.00205, 1.0)];
+        samples.extend(far.map(|r| (r, 1.0)));
+        let verdict = Realizability::of(&Target::rdf_curve(density(), &samples).expect("valid"));
+        assert!(
+            (verdict.min_power - (1.0 - 0.402_759_4 * 6.0)).abs() < 6e-3,
+            "{far:?}: {verdict:?}"
+        );
+    }
+    // P = 1 differs nowhere, wherever it is sampled.
+    let flat = Target::power_curve(density(), &[(1.0, 1.0), (100.0, 1.0)]).expect("valid");
+    assert!(flat.end() == 0.0 && Realizability::of(&flat).is_unobjectionable());
+    let flat = Target::rdf_curve(density(), &[(0.1, 1.0), (0.3, 1.0)]).expect("valid");
+    assert!(Realizability::of(&flat).is_unobjectionable() && flat.power(9.0) == 1.0);
     // A narrow peak above an empty region: few samples, and thousands on the same lines.
     let corners = [(0.0, 0.0), (51.2, 0.0), (51.21, 400.0), (51.22, 1.0), (60.0, 1.0)];
     let mut many = Vec::new();
@@ -137,6 +153,12 @@ fn combinations_of_one_part_are_that_part() {
             assert!((got.min_power - want.min_power).abs() < 1e-9, "{got:?} {want:?}");
             assert!((got.min_g - want.min_g).abs() < 1e-4, "{got:?} {want:?}");
         }
+    }
+    let everything = Target::step(density, 0.0).expect("valid");
+    let product = Target::product(vec![measured(1), everything]).expect("alike");
+    let radii: Vec<f64> = (0..400).map(|i| f64::from(i) / 400.0).collect();
+    for (got, want) in product.rdf(&radii).iter().zip(measured(1).rdf(&radii)) {
+        assert!((got - want).abs() < 1e-3, "{got}, not {want}");
     }
     // What two measured spectra scatter by is allowed for in their mean, too.
     let mean = Target::sum(vec![(0.5, measured(1)), (0.5, measured(2))]).expect("alike");

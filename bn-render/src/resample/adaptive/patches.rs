@@ -8,6 +8,7 @@ use super::super::blocks::BlockRow;
 use super::super::cells::{Strip, StripPlace};
 use super::PATCH;
 use super::progressive::ProgressivePattern;
+use crate::watch::{Turn, Watch};
 use crate::{Color, KernelTable, Scene};
 
 /// One axis of a tile: its pixels, the cells whose samples reach them, and the patches of cells.
@@ -86,11 +87,18 @@ struct Scratch {
     values: Vec<f64>,
     planes: Option<Planes>,
     references: Option<[BlockRow; 3]>,
+    turn: Turn,
 }
 
 impl Patches {
     /// Starts a tile: every patch with the pilot's two layers, values relative to `reference`.
-    pub(super) fn start(&mut self, source: Source<'_>, axes: [&Axis; 2], reference: Color) {
+    pub(super) fn start(
+        &mut self,
+        source: Source<'_>,
+        axes: [&Axis; 2],
+        reference: Color,
+        watch: &Watch<'_>,
+    ) {
         let channels = source.scene.channels().count();
         let count = axes[0].patches * axes[1].patches;
         self.reach = PATCH as usize + source.table.lanes() - 1;
@@ -115,16 +123,22 @@ impl Patches {
             value: vec![0.0; channels * area],
         });
         for patch in 0..count {
-            self.sample(source, axes, patch, 0);
-            self.sample(source, axes, patch, 1);
+            self.sample(source, axes, (patch, 0), watch);
+            self.sample(source, axes, (patch, 1), watch);
         }
     }
 
     /// Takes a patch to the next level.
-    pub(super) fn refine(&mut self, source: Source<'_>, axes: [&Axis; 2], patch: usize) {
+    pub(super) fn refine(
+        &mut self,
+        source: Source<'_>,
+        axes: [&Axis; 2],
+        patch: usize,
+        watch: &Watch<'_>,
+    ) {
         self.levels[patch] += 1;
         let layer = usize::from(self.levels[patch]) + 1;
-        self.sample(source, axes, patch, layer);
+        self.sample(source, axes, (patch, layer), watch);
     }
 
     /// The level of a patch.
@@ -145,8 +159,17 @@ impl Patches {
         (&self.old[range.clone()], &self.new[range])
     }
 
-    /// Samples a patch by one more layer.
-    fn sample(&mut self, source: Source<'_>, axes: [&Axis; 2], patch: usize, layer: usize) {
+    /// Samples a patch by one more layer, unless the watch is stopped.
+    fn sample(
+        &mut self,
+        source: Source<'_>,
+        axes: [&Axis; 2],
+        (patch, layer): (usize, usize),
+        watch: &Watch<'_>,
+    ) {
+        if watch.is_stopped() {
+            return;
+        }
         let (column, row) = (patch % axes[0].patches, patch / axes[0].patches);
         let (x, y) = (axes[0].cells_of(column), axes[1].cells_of(row));
         let place = StripPlace {
@@ -159,7 +182,7 @@ impl Patches {
         let range = patch * self.stride..(patch + 1) * self.stride;
         let (old, new) = (&mut self.old[range.clone()], &mut self.new[range]);
         old.copy_from_slice(new);
-        let Scratch { strip, values, planes: Some(planes), references: Some(references) } =
+        let Scratch { strip, values, planes: Some(planes), references: Some(references), turn } =
             &mut self.scratch
         else {
             return;
@@ -167,6 +190,7 @@ impl Patches {
         strip.collect(pattern, place, source.table.phase());
         let n = strip.len();
         self.samples += n as u64;
+        watch.took(n, turn);
         values.resize(n * planes.channels, 0.0);
         if let Some(color) = source.scene.constant_over(&place.rect(source.table.phase())) {
             for (plane, value) in values.chunks_exact_mut(n.max(1)).zip(color) {

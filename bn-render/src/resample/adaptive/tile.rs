@@ -4,7 +4,7 @@ use super::super::renderer::Normalization;
 use super::PATCH;
 use super::patches::{Axis, Patches, Source};
 use super::progressive::ProgressivePattern;
-use crate::watch::{Turn, Watch};
+use crate::watch::Watch;
 use crate::{Color, Rect};
 
 /// Pixels with less than this part of the expected weight aren't believed.
@@ -56,7 +56,6 @@ pub(super) struct TileScratch {
     gap: Vec<f64>,
     squares: Vec<Squares>,
     windows: Vec<Squares>,
-    turn: Turn,
 }
 
 /// The estimated squared errors of some pixels.
@@ -117,9 +116,8 @@ impl Task<'_> {
             return self.flat(axes, &reach, color);
         }
         let reference = self.source.scene.value(reach.center());
-        scratch.patches.start(self.source, axes, reference);
+        scratch.patches.start(self.source, axes, reference, watch);
         let pilot = scratch.patches.samples;
-        watch.took(pilot as usize, &mut scratch.turn);
         let last = self.source.pattern.levels() - 1;
         let mut finished = FinishedTile::default();
         loop {
@@ -130,9 +128,7 @@ impl Task<'_> {
             for (patch, &window) in scratch.windows.iter().enumerate() {
                 let goes_on = scratch.patches.level(patch) < last && !watch.is_stopped();
                 if goes_on && !window.is_within(self.most_square) {
-                    let before = scratch.patches.samples;
-                    scratch.patches.refine(self.source, axes, patch);
-                    watch.took((scratch.patches.samples - before) as usize, &mut scratch.turn);
+                    scratch.patches.refine(self.source, axes, patch, watch);
                     refined = true;
                 }
             }
@@ -268,10 +264,10 @@ impl Task<'_> {
                 if weight.0 + weight.1 == 0.0 {
                     return (color, Known::Nothing);
                 }
-                if weight.0.abs() < THIN * expected {
+                if weight.0 < THIN * expected {
                     return (color, Known::Thin);
                 }
-                let bounded = weight.0.abs().max(0.5 * expected);
+                let bounded = weight.0.max(0.5 * expected);
                 let gap = (value.1 - value.0 / bounded * weight.1) / bounded;
                 (color, Known::Error(scale * gap))
             }

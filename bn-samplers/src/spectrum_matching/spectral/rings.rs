@@ -23,7 +23,8 @@ const ROWS: usize = 64;
 /// ordered points have five times the power of their models at low frequencies.
 ///
 /// The curvature of a mode's power by the points' positions grows like ν². With p = 2 and μ = λ/4 the
-/// cost's is about the same at every frequency: that is what makes the search short.
+/// cost's is about the same at every frequency, but of measured targets: that is what makes the search
+/// short.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Weights {
