@@ -35,6 +35,7 @@
 //! Invariant: makes no pattern, prints nothing, knows no value of the thesis's tables.
 
 mod band_limited;
+mod gauss_legendre;
 mod image;
 mod kernel;
 mod metrics;
@@ -59,15 +60,15 @@ pub use image::{
 };
 #[cfg(feature = "exr")]
 pub use image::{ExrRows, read_exr, stream_exr, write_exr};
-pub use kernel::{KERNELS, Kernel, KernelTable, MAX_RADIUS, kernel};
+pub use kernel::{KERNELS, Kernel, KernelTable, KernelTransfer, MAX_RADIUS, kernel};
 pub use metrics::{difference, error_picture, mean_square_error, peak_signal_to_noise};
 pub use pattern::{Pattern, PatternError, SampleList, TileVariation};
 pub use plane::{Frame, FrameError, Rect, Window};
-pub use prediction::{ImageSpectrum, KernelTransfer, PatternPower, Prediction, SpectralLine};
+pub use prediction::{ImageSpectrum, PatternPower, Prediction, SpectralLine};
 pub use quadrature::{Convolution, exact_convolution};
 pub use resample::{
     AdaptiveBand, AdaptiveRenderer, AdaptiveStats, Band, Normalization, ProgressivePattern,
-    RenderError, RenderStats, Renderer,
+    RenderError, RenderStats, Renderer, grid_error,
 };
 pub use scene::{
     Checkerboard, Color, Constant, Interpolation, LimitedZonePlate, Picture, PlaneWave, PlaneWaves,

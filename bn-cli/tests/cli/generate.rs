@@ -65,6 +65,37 @@ fn every_method_gives_the_same_bytes_on_any_number_of_threads() {
 }
 
 #[test]
+fn kernels_scenes_and_supersampling_sets_are_listed() {
+    let folder = Folder::new();
+    let kernels = folder.bn("list kernels --json").done().json();
+    let tent = kernels.as_array().unwrap().iter().find(|k| k["name"] == "tent").unwrap();
+    assert_eq!((&tent["radius"], &tent["integral"]), (&1.0.into(), &1.0.into()));
+    // Bilinear interpolation: 1 − cos²(π/4), from one sample a pixel.
+    let error = tent["errors"][1]["error"].as_f64().unwrap();
+    assert!((error - 0.5).abs() < 1e-8, "{error}");
+    assert!(
+        folder
+            .bn("list kernels")
+            .done()
+            .text()
+            .contains("\ntent           1  1.000000     0.0955     0.5000")
+    );
+    let scenes = folder.bn("list scenes").done().text();
+    assert!(scenes.contains("zone-plate ") && scenes.contains("a ray-traced sphere"));
+    let sets = folder.bn("list supersampling --json").done().json();
+    let lanczos = sets.as_array().unwrap().iter().find(|k| k["name"] == "lanczos2").unwrap();
+    // Thesis section 3.1: 289 weights, shared so that a pixel costs 16 samples.
+    assert_eq!(
+        (&lanczos["samples_per_pixel"], &lanczos["weights_per_pixel"]),
+        (&16.into(), &289.into())
+    );
+    assert!(
+        folder.bn("list supersampling").done().text().contains("\nquincunx            2    5\n")
+    );
+    folder.bn("list colours").refused(2, &["colours", "kernels"]);
+}
+
+#[test]
 fn help_tells_options_and_sources() {
     let help = Folder::new().bn("generate jittered --help").done().text();
     for word in ["--width", "Heck 2013", "Example", "--seed"] {

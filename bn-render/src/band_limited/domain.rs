@@ -116,7 +116,7 @@ fn degree(band: f64, length: usize) -> usize {
     ((band * length as f64).ceil() as usize).saturating_sub(1)
 }
 
-/// Refuses degrees whose transforms don't fit. A frame's longer side counts for both.
+/// Refuses degrees whose transforms don't fit.
 pub(super) fn check_degree(degree: Degree) -> Result<(), BandLimitedError> {
     check("places of a transform", degree.transform_places(), MOST_PLACES)
 }
@@ -188,6 +188,14 @@ mod tests {
                 let refused = Domain::new(&long, border, 2.0, 0.5);
                 assert!(matches!(refused, Err(BandLimitedError::TooLarge { .. })), "{width}");
             }
+        }
+        // What is refused does not hang on which side is longer.
+        let accepted = |width, height| {
+            let frame = Frame::new(width, height).expect("a size");
+            Domain::new(&frame, Border::Periodic, 2.0, 0.5).is_ok()
+        };
+        for (long, short, fits) in [(11_000, 64, true), (11_400, 64, false), (8000, 500, true)] {
+            assert_eq!((accepted(long, short), accepted(short, long)), (fits, fits), "{long}");
         }
         let photograph = Frame::new(1920, 1080).expect("a size");
         assert!(Domain::new(&photograph, Border::Fade, 2.0, 0.5).is_ok());

@@ -46,8 +46,8 @@ impl BandLimitedFit {
     ///
     /// # Errors
     /// If a weight is negative or not finite, none is positive, or the degree is too large: transforms
-    /// take 16 bytes for each of up to 8.5 (2x + 1) K + 4.3 K² places, K the larger of x and y, and may
-    /// take 2 GB.
+    /// take 16 bytes for each of up to 8.5 (2k + 1) K or 4.3 K² places, K the larger of x and y and k the
+    /// lesser, and may take 2 GB.
     ///
     /// # Panics
     /// If there isn't one weight a point.

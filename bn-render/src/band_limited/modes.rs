@@ -25,16 +25,27 @@ impl Degree {
     }
 
     /// The most numbers that a transform between points and these modes, or twice as many along
-    /// each axis, holds at once: columns times the rows of a grid that is as fine along both axes,
-    /// at up to 2.13 times the Nyquist rate.
+    /// each axis, holds at once, the lesser axis lying across: columns times the rows of a grid that is
+    /// as fine along both axes, at up to 2.13 times the Nyquist rate.
     pub(super) fn transform_places(self) -> f64 {
-        let (x, most) = (self.x as f64, self.most() as f64);
+        let (least, most) = (self.x.min(self.y) as f64, self.most() as f64);
         let rows = 4.26 * most + 64.0;
-        ((2.0 * x + 1.0) * 2.0 * rows).max((most + 1.0) * rows)
+        ((2.0 * least + 1.0) * 2.0 * rows).max((most + 1.0) * rows)
     }
 
     pub(super) fn most(self) -> usize {
         self.x.max(self.y)
+    }
+
+    /// That of the same plane with its axes exchanged.
+    pub(super) fn transposed(self) -> Self {
+        Self { x: self.y, y: self.x }
+    }
+
+    /// Whether transforms need less if the axes are exchanged: columns are held whole, so there should
+    /// be few.
+    pub(super) fn is_wide(self) -> bool {
+        self.x > self.y
     }
 }
 
@@ -72,6 +83,22 @@ impl Modes {
     pub(super) fn par_columns_mut(&mut self) -> rayon::slice::ChunksExactMut<'_, Complex<f64>> {
         let side = self.side();
         self.values.par_chunks_exact_mut(side)
+    }
+
+    /// Sets these to `other` with the axes exchanged, a(kx, ky) = other(ky, kx).
+    pub(super) fn transpose_from(&mut self, other: &Self) {
+        let degree = self.degree;
+        assert_eq!(degree.transposed(), other.degree, "modes of another range");
+        self.par_columns_mut().enumerate().for_each(|(kx, column)| {
+            let (before, after) = column.split_at_mut(degree.y);
+            for (ky, a) in after.iter_mut().enumerate() {
+                *a = other.column(ky)[degree.x + kx];
+            }
+            // other(−ky, kx) is the conjugate of other(ky, −kx), whose column is held.
+            for (ky, a) in (1..).zip(before.iter_mut().rev()) {
+                *a = other.column(ky)[degree.x - kx].conj();
+            }
+        });
     }
 
     /// ⟨a, b⟩ over the whole plane: Σ a(k)* b(k), which is real. Summed column by column, so that
@@ -117,6 +144,35 @@ impl Modes {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn transposition_exchanges_the_axes() {
+        let degree = Degree { x: 3, y: 2 };
+        // a(kx, ky), with a(0, −ky) = a(0, ky)* as modes of real functions have it.
+        let value = |kx: i32, ky: i32| {
+            let (sign, kx, ky) =
+                if kx < 0 || (kx == 0 && ky < 0) { (-1.0, -kx, -ky) } else { (1.0, kx, ky) };
+            let im = if (kx, ky) == (0, 0) { 0.0 } else { f64::from(kx - 4 * ky) };
+            Complex::new(f64::from(10 * kx + ky), sign * im)
+        };
+        let filled = |degree: Degree, value: &dyn Fn(i32, i32) -> Complex<f64>| {
+            let mut modes = Modes::zeros(degree);
+            for (kx, column) in modes.columns_mut().enumerate() {
+                for (j, a) in column.iter_mut().enumerate() {
+                    *a = value(kx as i32, j as i32 - degree.y as i32);
+                }
+            }
+            modes
+        };
+        let modes = filled(degree, &value);
+        let mut turned = Modes::zeros(degree.transposed());
+        turned.transpose_from(&modes);
+        assert_eq!(turned, filled(degree.transposed(), &|kx, ky| value(ky, kx)));
+        assert_eq!(turned.norm_squared(), modes.norm_squared());
+        let mut back = Modes::zeros(degree);
+        back.transpose_from(&turned);
+        assert_eq!(back, modes);
+    }
 
     #[test]
     fn products_count_both_half_planes() {

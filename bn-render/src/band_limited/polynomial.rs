@@ -1,11 +1,11 @@
 //! Real trigonometric polynomials on the unit torus.
 
 use bn_core::DVec2;
-use bn_spectral::{Complex, NufftOptions};
+use bn_spectral::Complex;
 
 use super::error::BandLimitedError;
 use super::modes::{Degree, Modes};
-use super::scattered::type2;
+use super::scattered::values_at;
 
 /// p(x) = c + Σ a(k) exp(2πi k·x) over |kx| ≤ `degree.x`, |ky| ≤ `degree.y`, real.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,9 +39,7 @@ impl TrigonometricPolynomial {
     /// # Errors
     /// If the degree is beyond what can be transformed.
     pub fn values(&self, points: &[DVec2]) -> Result<Vec<f64>, BandLimitedError> {
-        let options = NufftOptions::new(self.degree().most(), 1e-11).expecting(points.len());
-        let mut values = vec![0.0; points.len()];
-        type2(&mut options.plan()?, &self.modes, points, &mut values);
+        let mut values = values_at(&self.modes, points)?;
         for value in &mut values {
             *value += self.constant;
         }

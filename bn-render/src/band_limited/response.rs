@@ -1,9 +1,6 @@
 //! The low-pass between the reconstruction and the pixels.
 
-use std::f64::consts::TAU;
-
-use crate::Kernel;
-use crate::quadrature::gauss_legendre;
+use crate::{Kernel, KernelTransfer};
 
 /// What the reconstructed function passes before it is taken at the pixels' centres.
 #[derive(Clone, Copy)]
@@ -36,7 +33,7 @@ impl LowPass<'_> {
 
     /// The gains of the frequencies 0, 1, …, `most` cycles per `period` pixels.
     pub(super) fn gains(self, most: usize, period: usize) -> Vec<f64> {
-        let frequencies = (0..=most).map(|k| k as f64 / period as f64);
+        let frequency = |k: usize| k as f64 / period as f64;
         match self {
             Self::Nyquist => (0..=most)
                 .map(|k| match (2 * k).cmp(&period) {
@@ -46,30 +43,11 @@ impl LowPass<'_> {
                 })
                 .collect(),
             Self::Kernel(kernel) => {
-                let nodes = nodes(kernel, most as f64 / period as f64);
-                frequencies.map(|nu| transform(&nodes, nu) / kernel.integral()).collect()
+                let transfer = KernelTransfer::new(kernel, frequency(most));
+                (0..=most).map(|k| transfer.axis(frequency(k))).collect()
             }
         }
     }
-}
-
-/// Gauss–Legendre nodes over the unit intervals on which the kernel is smooth, with the kernel's
-/// values times the rule's weights; enough of them for `band` cycles per pixel.
-fn nodes(kernel: &dyn Kernel, band: f64) -> Vec<(f64, f64)> {
-    let rule = gauss_legendre(24 + (4.0 * band).ceil() as usize);
-    let pieces = (2.0 * kernel.radius()) as usize;
-    (0..pieces)
-        .flat_map(|piece| {
-            let start = piece as f64 - kernel.radius();
-            rule.iter().map(move |&(x, w)| (start + x, w))
-        })
-        .map(|(x, w)| (x, w * kernel.value(x)))
-        .collect()
-}
-
-/// ∫ r(x) cos(2πνx) dx.
-fn transform(nodes: &[(f64, f64)], nu: f64) -> f64 {
-    nodes.iter().map(|(x, w)| w * libm::cos(TAU * nu * x)).sum()
 }
 
 #[cfg(test)]

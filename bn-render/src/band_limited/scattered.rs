@@ -7,13 +7,18 @@ use super::error::BandLimitedError;
 use super::modes::{Degree, Modes};
 
 /// The points with their weights, and the transform between them and the modes.
+///
+/// Wide degrees are transformed with their axes exchanged, so that they need no more than tall ones.
 pub(super) struct Scattered {
+    /// With their axes exchanged if the degree is wide.
     points: Vec<DVec2>,
     /// Of sum 1.
     weights: Vec<f64>,
     degree: Degree,
     plan: Nufft,
     strengths: Vec<f64>,
+    /// The modes with their axes exchanged, if the degree is wide.
+    turned: Option<Modes>,
 }
 
 /// Relative error of the transforms: far below what reconstruction is asked for.
@@ -40,8 +45,10 @@ impl Scattered {
         }
         let sum: f64 = weights.iter().map(|weight| weight / most).sum();
         let weights = weights.iter().map(|weight| weight / most / sum).collect();
-        let plan = NufftOptions::new(degree.most(), TOLERANCE).expecting(points.len()).plan()?;
-        Ok(Self { points, weights, degree, plan, strengths: Vec::new() })
+        let plan = plan(degree, points.len())?;
+        let turned = degree.is_wide().then(|| Modes::zeros(degree.transposed()));
+        let points = upright(points, degree);
+        Ok(Self { points, weights, degree, plan, strengths: Vec::new(), turned })
     }
 
     pub(super) fn len(&self) -> usize {
@@ -60,22 +67,71 @@ impl Scattered {
     pub(super) fn sum_modes(&mut self, values: &[f64], modes: &mut Modes) {
         self.strengths.clear();
         self.strengths.extend(self.weights.iter().zip(values).map(|(w, v)| w * v));
-        type1(&mut self.plan, &self.points, &self.strengths, modes);
+        match &mut self.turned {
+            None => type1(&mut self.plan, &self.points, &self.strengths, modes),
+            Some(turned) => {
+                type1(&mut self.plan, &self.points, &self.strengths, turned);
+                modes.transpose_from(turned);
+            }
+        }
     }
 
     /// The values at the points of the function with these modes.
     pub(super) fn sum_points(&mut self, modes: &Modes, values: &mut [f64]) {
+        let modes = match &mut self.turned {
+            None => modes,
+            Some(turned) => {
+                turned.transpose_from(modes);
+                turned
+            }
+        };
         type2(&mut self.plan, modes, &self.points, values);
     }
 
     /// τ(k) = Σ wⱼ exp(−2πi k·xⱼ) for twice the degree: what the normal equations' matrix is made of.
     pub(super) fn weight_modes(&self) -> Result<Modes, BandLimitedError> {
         let degree = self.degree.doubled();
-        let options = NufftOptions::new(degree.most(), TOLERANCE).expecting(self.points.len());
-        let mut modes = Modes::zeros(degree);
-        type1(&mut options.plan()?, &self.points, &self.weights, &mut modes);
-        Ok(modes)
+        let mut plan = plan(degree, self.points.len())?;
+        let upright = if degree.is_wide() { degree.transposed() } else { degree };
+        let mut modes = Modes::zeros(upright);
+        type1(&mut plan, &self.points, &self.weights, &mut modes);
+        if upright == degree {
+            return Ok(modes);
+        }
+        let mut turned = Modes::zeros(degree);
+        turned.transpose_from(&modes);
+        Ok(turned)
     }
+}
+
+/// The transform between `points` points and modes of this degree.
+fn plan(degree: Degree, points: usize) -> Result<Nufft, BandLimitedError> {
+    Ok(NufftOptions::new(degree.most(), TOLERANCE).expecting(points).plan()?)
+}
+
+/// The points as transforms of this degree take them: with their axes exchanged if it is wide.
+fn upright(mut points: Vec<DVec2>, degree: Degree) -> Vec<DVec2> {
+    if degree.is_wide() {
+        for point in &mut points {
+            *point = DVec2::new(point.y, point.x);
+        }
+    }
+    points
+}
+
+/// The values at any points of the function with these modes.
+pub(super) fn values_at(modes: &Modes, points: &[DVec2]) -> Result<Vec<f64>, BandLimitedError> {
+    let degree = modes.degree();
+    let mut plan = plan(degree, points.len())?;
+    let mut values = vec![0.0; points.len()];
+    if degree.is_wide() {
+        let mut turned = Modes::zeros(degree.transposed());
+        turned.transpose_from(modes);
+        type2(&mut plan, &turned, &upright(points.to_vec(), degree), &mut values);
+    } else {
+        type2(&mut plan, modes, points, &mut values);
+    }
+    Ok(values)
 }
 
 fn type1(plan: &mut Nufft, points: &[DVec2], strengths: &[f64], modes: &mut Modes) {
@@ -91,8 +147,7 @@ fn type1(plan: &mut Nufft, points: &[DVec2], strengths: &[f64], modes: &mut Mode
     );
 }
 
-/// The values at any points of the function with these modes.
-pub(super) fn type2(plan: &mut Nufft, modes: &Modes, points: &[DVec2], values: &mut [f64]) {
+fn type2(plan: &mut Nufft, modes: &Modes, points: &[DVec2], values: &mut [f64]) {
     let (degree, limit) = (modes.degree(), plan.max_frequency());
     plan.columns_to_points(points, values, |kx, column| {
         column.fill(Complex::new(0.0, 0.0));

@@ -3,10 +3,10 @@
 use bn_core::DVec2;
 use rayon::prelude::*;
 
-use super::transfer::WhiteNoise;
-use super::{ImageSpectrum, KernelTransfer, PatternPower, SpectralLine};
+use super::white_noise::WhiteNoise;
+use super::{ImageSpectrum, PatternPower, SpectralLine};
 use crate::pattern::check_rate;
-use crate::{Kernel, PatternError};
+use crate::{Kernel, KernelTransfer, PatternError};
 
 /// Predicts the error of an image that is sampled by a pattern at a rate (thesis section 3.2.1).
 ///
@@ -129,5 +129,5 @@ impl Filter {
 fn modes_around(prediction: &Prediction<'_>, transfer: &KernelTransfer, nu: f64) -> Vec<f64> {
     let limit = prediction.pattern.max_frequency() as i64;
     let side = prediction.side();
-    (-limit..=limit).map(|k| transfer.axis_power(nu + k as f64 / side)).collect()
+    (-limit..=limit).map(|k| transfer.axis(nu + k as f64 / side).powi(2)).collect()
 }

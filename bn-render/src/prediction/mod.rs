@@ -4,9 +4,8 @@
 mod error;
 mod image_spectrum;
 mod pattern_power;
-mod transfer;
+mod white_noise;
 
 pub use error::Prediction;
 pub use image_spectrum::{ImageSpectrum, SpectralLine};
 pub use pattern_power::PatternPower;
-pub use transfer::KernelTransfer;

@@ -5,6 +5,7 @@ mod band_limited;
 mod band_limited_images;
 mod cancelling;
 mod common;
+mod grids;
 mod images;
 mod pattern;
 mod picture;

@@ -33,7 +33,7 @@ fn noise_over_shifts(scene: &PlaneWaves, set: &PointSet, rate: f64, name: &str) 
     let exact = |at: DVec2| {
         let wave = |w: &PlaneWave| {
             let one = PlaneWaves::new(0.0, vec![*w]);
-            transfer.response(w.frequency).re * one.value(at)[0]
+            transfer.response(w.frequency) * one.value(at)[0]
         };
         scene.mean() + scene.waves().iter().map(wave).sum::<f64>()
     };

@@ -52,7 +52,7 @@ impl<'a> Sampled<'a> {
         let frame = Frame::new(side, side).map_err(Failure::failed)?;
         let table = KernelTable::new(kernel);
         let frequency = DIRECTION * frequency * RATE.sqrt();
-        let gain = KernelTransfer::new(kernel, frequency.length()).response(frequency).re;
+        let gain = KernelTransfer::new(kernel, frequency.length()).response(frequency);
         let mut measured = 0.0;
         for (i, set) in self.sets.iter().enumerate() {
             // Each set meets the wave in another phase, unless it is a constant.

@@ -59,7 +59,8 @@ pub(super) fn command() -> Command {
              PSNR is 10 log10(1/MSE) of unquantised values.",
         )
         .after_help(format!(
-            "Scenes:\n{}\n\nSupersampling sets: {}\n\nExamples:\n  \
+            "Scenes:\n{}\n\nSupersampling sets: {}\n\n`bn list kernels` tells what each \
+             kernel does to band-limited images, `bn list supersampling` the samples of each set.\n\nExamples:\n  \
              bn render zone-plate --pattern fpo --spp 4 -o plate.png\n  \
              bn render checkerboard --pattern step.txt --spp 8 --reference 512 --error error.png -o board.png\n  \
              bn render zone-plate-limited --frequency 0.4 --pattern jittered --reconstruct act -o act.png\n  \

@@ -1,46 +1,23 @@
-//! `bn list`: the methods that there are.
+//! The methods that make patterns.
+
+use std::io::{Result, Write};
 
 use bn_samplers::{METHODS, Method, OptionSpec};
-use clap::{Args, Command};
 use serde::Serialize;
 
-use crate::{Failure, Outcome, output};
+use super::write_names;
 
-#[derive(Debug, Args)]
-pub(super) struct List {
-    /// A JSON array of {name, summary, page, options} on standard output
-    #[arg(long)]
-    json: bool,
+pub(super) fn entries() -> Vec<Entry> {
+    METHODS.iter().map(|method| Entry::of(method)).collect()
 }
 
-pub(super) fn command() -> Command {
-    List::augment_args(
-        Command::new("list")
-            .about("List the methods that make patterns")
-            .after_help("`bn generate METHOD --help` tells the options of a method."),
-    )
-}
-
-pub(super) fn run(args: &List) -> Outcome {
-    if args.json {
-        return output::write_stdout(|w| {
-            let entries: Vec<Entry> = METHODS.iter().map(|method| Entry::of(method)).collect();
-            serde_json::to_writer_pretty(&mut *w, &entries).map_err(Failure::failed)?;
-            Ok(writeln!(w)?)
-        });
-    }
-    let width = METHODS.iter().map(|method| method.name.len()).max().unwrap_or(0);
-    output::write_stdout(|w| {
-        for method in METHODS {
-            writeln!(w, "{:width$}  {}", method.name, method.summary)?;
-        }
-        Ok(())
-    })
+pub(super) fn write(w: &mut dyn Write, methods: &[Entry]) -> Result<()> {
+    write_names(w, methods.iter().map(|method| (method.name, method.summary)))
 }
 
 /// A method as `bn list --json` shows it.
 #[derive(Serialize)]
-struct Entry {
+pub(super) struct Entry {
     name: &'static str,
     aliases: &'static [&'static str],
     summary: &'static str,
