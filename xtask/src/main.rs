@@ -10,6 +10,7 @@ mod tables;
 mod thesis;
 mod workspace;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use bn_cli::output::remark;
@@ -35,6 +36,12 @@ enum Task {
     Report(report::ReportArgs),
     Bench(bench::BenchArgs),
     Ci(ci::CiArgs),
+    /// The program `bn`, for benches of whole processes
+    #[command(hide = true, disable_help_flag = true)]
+    Bn {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -69,6 +76,9 @@ fn run(cli: &Cli) -> Outcome {
         Task::Report(args) => report::run(args),
         Task::Bench(args) => bench::run(args),
         Task::Ci(args) => ci::run(args),
+        Task::Bn { arguments } => {
+            bn_cli::commands::run(std::iter::once("bn".into()).chain(arguments.iter().cloned()))
+        }
     }
 }
 

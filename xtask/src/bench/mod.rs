@@ -10,6 +10,7 @@ mod machine;
 mod matching;
 mod nufft;
 mod optimizers;
+mod programs;
 mod rendering;
 mod samplers;
 mod skipping;
@@ -36,7 +37,7 @@ pub(crate) struct BenchArgs {
     #[arg(long)]
     quick: bool,
     /// Only this chapter: bessel, hankel, bessel-sums, nufft, estimators, samplers, optimizers,
-    /// matching, imitations, rendering or skipping
+    /// matching, imitations, rendering, skipping or programs
     #[arg(long, value_name = "CHAPTER")]
     only: Option<String>,
 }
@@ -61,7 +62,7 @@ const SEED: u64 = 1;
 type Measure = fn(Effort) -> Outcome<Chapter>;
 
 /// The chapters, in the order in which data flow.
-const CHAPTERS: [(&str, Measure); 11] = [
+const CHAPTERS: [(&str, Measure); 12] = [
     ("bessel", bessel::measure),
     ("hankel", hankel::measure),
     ("bessel-sums", bessel_sums::measure),
@@ -73,6 +74,7 @@ const CHAPTERS: [(&str, Measure); 11] = [
     ("imitations", imitations::measure),
     ("rendering", rendering::measure),
     ("skipping", skipping::measure),
+    ("programs", programs::measure),
 ];
 
 pub(crate) fn run(args: &BenchArgs) -> Outcome {
