@@ -1,29 +1,23 @@
 //! Adaptive sampling against uniform sampling of the same error, and what predictions cost.
 
+mod common;
 #[path = "../tests/render/common/silent.rs"]
 mod silent;
 
 use std::hint::black_box;
 
-use bn_core::{DVec2, PointSet, Seed, Unobserved};
+use bn_core::{DVec2, Seed, Unobserved};
 use bn_render::{
-    AdaptiveRenderer, Channels, Checkerboard, Frame, Image, ImageSpectrum, KernelTable,
-    Normalization, Pattern, PatternPower, PlaneWave, PlaneWaves, Prediction, ProgressivePattern,
-    Renderer, Scene, SphereScene, kernel,
+    AdaptiveRenderer, Channels, Checkerboard, Image, ImageSpectrum, KernelTable, Normalization,
+    Pattern, PatternPower, PlaneWave, PlaneWaves, Prediction, ProgressivePattern, Renderer, Scene,
+    SphereScene, kernel,
 };
+use common::{frame, jittered};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use rand::RngExt;
 use silent::Silent;
 
-fn jittered(m: u32) -> PointSet {
-    let mut rng = Seed::new(1).stream(0);
-    let mut jitter = |i: u32| (f64::from(i) + rng.random::<f64>()) / f64::from(m);
-    let points = (0..m * m).map(|i| DVec2::new(jitter(i % m), jitter(i / m)));
-    PointSet::wrapped(points.collect()).expect("valid points")
-}
-
 fn adaptive(c: &mut Criterion) {
-    let frame = Frame::new(512, 512).expect("a size");
+    let frame = frame(512, 512);
     let table = KernelTable::new(kernel("lanczos2").expect("a kernel"));
     let set = jittered(64);
     let progressive = ProgressivePattern::new(&set, 4.0, 1024.0, Seed::new(1)).expect("rates");
@@ -81,7 +75,7 @@ fn prediction(c: &mut Criterion) {
         b.iter(|| prediction.noise(black_box(&wave), lanczos));
     });
     for side in [32, 128] {
-        let frame = Frame::new(side, side).expect("a size");
+        let frame = frame(side, side);
         let values = (0..side * side).map(|i| ((i * 7919) % 1009) as f32 / 1009.0).collect();
         let image = Image::new(side, side, Channels::Grey, values).expect("an image");
         let spectrum = ImageSpectrum::of_image(&image, &frame);

@@ -231,6 +231,8 @@ fn bad_use_is_refused_with_a_reason() {
         ("render zone-plate --pattern one.txt --seed 2 -o a.png", "--seed"),
         ("render zone-plate --supersampling quincunx --seed 2 -o a.png", "--seed"),
         ("render zone-plate --supersampling quincunx --kernel box -o a.png", "--kernel"),
+        ("render zone-plate --supersampling quincunx --max-spp 0 -o a.png", "--max-spp"),
+        ("render zone-plate --supersampling quincunx --reconstruct act -o a.png", "--reconstruct"),
         ("render light.pfm --scene-encoding linear --pattern one.txt -o a.png", ".png only"),
         // Numbers are looked at before patterns are made or read.
         ("render zone-plate --pattern absent.txt --spp 0 -o a.png", "samples per pixel"),
@@ -241,6 +243,8 @@ fn bad_use_is_refused_with_a_reason() {
         ("render zone-plate --pattern absent.txt --reconstruct act --band 0 -o a.png", "--band 0"),
         ("render zone-plate --pattern absent.txt --reference nan -o a.png", "samples per pixel"),
         ("render zone-plate --pattern absent.txt --reference light.pfm -o a.png", "512×512"),
+        #[cfg(unix)]
+        ("render zone-plate --supersampling /dev/zero -o a.png", "too long"),
     ] {
         folder.bn(words).refused(2, &[said]);
     }

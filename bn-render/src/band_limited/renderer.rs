@@ -40,11 +40,13 @@ pub struct BandLimitedOptions {
 }
 
 impl BandLimitedOptions {
-    /// The band for s samples per pixel, √s/4: four samples a coefficient, which leaves irregular
-    /// patterns well-conditioned; for low rates ½, the pixels' own, down to two samples a coefficient.
-    pub fn usual_band(samples_per_pixel: f64) -> f64 {
+    /// The band for s samples per pixel. √s/4 leaves irregular patterns well-conditioned, with four
+    /// samples a coefficient. For low rates it is what images of the pixels' own band, ½, need:
+    /// ½, and 1/12 more for what [`Border::Fade`] spreads, down to two samples a coefficient, √(s/8).
+    pub fn usual_band(border: Border, samples_per_pixel: f64) -> f64 {
         let root = samples_per_pixel.sqrt();
-        (0.25 * root).max((root * std::f64::consts::FRAC_1_SQRT_2 * 0.5).min(0.5))
+        let pixels = 0.5 + border.spread();
+        (0.25 * root).max((root * std::f64::consts::FRAC_1_SQRT_2 * 0.5).min(pixels))
     }
 
     /// Whether images of this frame can be reconstructed so, before any sample is taken.
@@ -67,7 +69,7 @@ impl BandLimitedOptions {
         low_pass: LowPass<'_>,
         samples_per_pixel: f64,
     ) -> Result<(Domain, f64), BandLimitedError> {
-        let band = self.band.unwrap_or_else(|| Self::usual_band(samples_per_pixel));
+        let band = self.band.unwrap_or_else(|| Self::usual_band(self.border, samples_per_pixel));
         if !(band > 0.0 && band.is_finite()) {
             return Err(BandLimitedError::Band { band });
         }

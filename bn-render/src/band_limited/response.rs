@@ -6,7 +6,8 @@ use crate::{Kernel, KernelTransfer};
 #[derive(Clone, Copy)]
 pub enum LowPass<'a> {
     /// All frequencies below ½ cycle per pixel along each axis, and no other: the limit of the kernel
-    /// `sinc` without its window. Half of those at ½.
+    /// `sinc` without its window. Half of those at ½. Of content that
+    /// [`Border::Fade`](super::Border::Fade) spreads beyond ½, what it cuts is missing near the border.
     Nyquist,
     /// The convolution with a kernel of unit gain, exactly: what convolving samples with that kernel
     /// tends to as they become dense, and [`exact_convolution`](crate::exact_convolution) computes.

@@ -9,53 +9,99 @@ use ::exr::math::Vec2;
 use ::exr::meta::attribute::{ChannelDescription, LineOrder, SampleType, Text};
 use ::exr::meta::header::Header;
 use ::exr::meta::{BlockDescription, MetaData};
-use ::exr::prelude::{ReadChannels, ReadLayers, SmallVec, read};
+use ::exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, SmallVec, read};
 use rayon::prelude::*;
 
 use super::{Channels, Image, ImageError, checked_len, malformed};
 
-/// Reads the first flat layer of an EXR file: its channels `R`, `G`, `B`, or `Y`, or the only one.
+/// Reads the first flat layer of an EXR file that has channels `R`, `G`, `B`, or `Y`, or one alone.
+///
+/// Memory: the image, and the blocks that are being decompressed, whatever other channels there are;
+/// what a file announces and doesn't hold takes none.
 ///
 /// # Errors
 /// If the file can't be read, is malformed, too large, or has other channels.
 pub fn read_exr(mut input: impl BufRead + Seek) -> Result<Image, ImageError> {
     let start = input.stream_position()?;
     let meta = MetaData::read_from_buffered(&mut input, false).map_err(from_exr)?;
-    for header in &meta.headers {
-        let size = header.layer_size;
-        checked_len(size.0 as u64, size.1 as u64, Channels::Rgb)?;
+    let mut flat = meta.headers.iter().filter(|header| !header.deep);
+    let Some((header, wanted)) = flat.find_map(|h| Some((h, Wanted::of(h)?))) else {
+        return Err(malformed("EXR", "there are no channels R, G, B or Y"));
+    };
+    let (width, height) = (header.layer_size.0, header.layer_size.1);
+    let len = checked_len(width as u64, height as u64, wanted.channels())?;
+    if header.max_block_byte_size() > MAX_BLOCK {
+        return Err(malformed("EXR", "its blocks are absurdly large"));
     }
     input.seek(std::io::SeekFrom::Start(start))?;
-    let file = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(input)
-        .map_err(from_exr)?;
-    let layer = file.layer_data;
-    let list = &layer.channel_data.list;
-    if list.iter().any(|c| c.sampling.0 != 1 || c.sampling.1 != 1) {
-        return Err(malformed("EXR", "subsampled channels are not supported"));
-    }
-    let find = |name: &str| list.iter().find(|c| c.name.to_string() == name);
-    let (channels, planes) = match (find("R"), find("G"), find("B"), find("Y"), list.as_slice()) {
-        (Some(r), Some(g), Some(b), ..) => (Channels::Rgb, vec![r, g, b]),
-        (.., Some(y), _) => (Channels::Grey, vec![y]),
-        (.., [only]) => (Channels::Grey, vec![only]),
-        _ => return Err(malformed("EXR", "there are no channels R, G, B or Y")),
+    // Zeros that nothing was written to take no memory.
+    let zeros = move || vec![0.0_f32; len];
+    let flat = read().no_deep_data().largest_resolution_level().specific_channels();
+    let channels = wanted.channels();
+    let values = match wanted {
+        Wanted::Rgb => {
+            flat.required("R")
+                .required("G")
+                .required("B")
+                .collect_pixels(
+                    move |_, _| zeros(),
+                    move |values, at, (r, g, b): (f32, f32, f32)| {
+                        values[3 * (at.1 * width + at.0)..][..3].copy_from_slice(&[r, g, b]);
+                    },
+                )
+                .first_valid_layer()
+                .all_attributes()
+                .from_buffered(input)
+                .map_err(from_exr)?
+                .layer_data
+                .channel_data
+                .pixels
+        }
+        Wanted::One(name) => {
+            flat.required(name)
+                .collect_pixels(
+                    move |_, _| zeros(),
+                    move |values, at, (value,): (f32,)| values[at.1 * width + at.0] = value,
+                )
+                .first_valid_layer()
+                .all_attributes()
+                .from_buffered(input)
+                .map_err(from_exr)?
+                .layer_data
+                .channel_data
+                .pixels
+        }
     };
-    let (width, height) = (layer.size.0, layer.size.1);
-    let count = channels.count();
-    let mut values = vec![0.0; width * height * count];
-    for (offset, plane) in planes.into_iter().enumerate() {
-        let slots = values.iter_mut().skip(offset).step_by(count);
-        for (slot, value) in slots.zip(plane.sample_data.values_as_f32()) {
-            *slot = value;
+    Image::new(width as u32, height as u32, channels, values)
+}
+
+/// Most bytes of a block, which is decompressed as a whole.
+const MAX_BLOCK: usize = 1 << 30;
+
+/// The channels that are read.
+enum Wanted {
+    Rgb,
+    One(Text),
+}
+
+impl Wanted {
+    /// Those of a layer, if it has any.
+    fn of(header: &Header) -> Option<Self> {
+        let list = &header.channels.list;
+        let find = |name: &str| list.iter().find(|c| c.name.to_string() == name);
+        match (find("R"), find("G"), find("B"), find("Y"), list.as_slice()) {
+            (Some(_), Some(_), Some(_), ..) => Some(Self::Rgb),
+            (.., Some(one), _) | (.., [one]) => Some(Self::One(one.name.clone())),
+            _ => None,
         }
     }
-    Image::new(width as u32, height as u32, channels, values)
+
+    fn channels(&self) -> Channels {
+        match self {
+            Self::Rgb => Channels::Rgb,
+            Self::One(_) => Channels::Grey,
+        }
+    }
 }
 
 /// Writes an image as an EXR file, values as they are, losslessly compressed.

@@ -113,11 +113,7 @@ impl Image {
         if values.len() != want {
             return Err(ImageError::Count { got: values.len(), want });
         }
-        if let Some(bad) = values.iter().position(|v| !v.is_finite()) {
-            let pixel = bad / channels.count();
-            let (x, y) = (pixel % width as usize, pixel / width as usize);
-            return Err(ImageError::NotFinite { x: x as u32, y: y as u32 });
-        }
+        check_finite(&values, width, channels, 0)?;
         Ok(Self { width, height, channels, values })
     }
 
@@ -167,6 +163,23 @@ impl Image {
     /// Width×height×channels, for messages.
     pub(crate) fn shape(&self) -> String {
         format!("{}×{}×{}", self.width, self.height, self.channels.count())
+    }
+}
+
+/// Refuses rows of an image, from row `first_row` on, that hold a value that is no finite number.
+pub(crate) fn check_finite(
+    values: &[f32],
+    width: u32,
+    channels: Channels,
+    first_row: u32,
+) -> Result<(), ImageError> {
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(bad) => {
+            let pixel = bad / channels.count();
+            let (x, y) = (pixel % width as usize, pixel / width as usize);
+            Err(ImageError::NotFinite { x: x as u32, y: first_row + y as u32 })
+        }
     }
 }
 

@@ -85,6 +85,11 @@ impl<'a> Layout<'a> {
         8 * rows * width * (1 + self.scene.channels().count())
     }
 
+    /// Bytes of a band's finished rows.
+    pub(super) fn row_bytes(&self) -> usize {
+        4 * BLOCK as usize * self.window.width as usize * self.scene.channels().count()
+    }
+
     /// Accumulates all samples of band `band`, or some of them if the watch is stopped.
     pub(super) fn accumulate_band(
         &self,

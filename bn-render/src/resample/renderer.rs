@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use super::band::{Layout, Planes, Scratch};
 use super::blocks::block_range;
+use crate::image::check_finite;
 use crate::watch::Watch;
 use crate::{Channels, Frame, Image, ImageError, KernelTable, Pattern, Scene};
 
@@ -84,8 +85,9 @@ pub struct Band<'a> {
 /// Pixel (i, j) has its centre at (i + ½, j + ½) and gathers the samples within the kernel's
 /// (square) support, samples outside the image included. Each sample is evaluated once. The result
 /// is the same to the bit for any number of threads, any window of the image and whether or not
-/// the scene tells where it is constant. Memory holds a few bands of 32 rows, at most some 200 MB
-/// or, of very wide images, three bands of 8·(1 + channels)·(32 + 2·radius)·width bytes.
+/// the scene tells where it is constant. Memory holds bands of 32 rows: two and, at once, as many as
+/// fit into 160 MB with the rows that they become (but at least one); 8·(1 + channels)·(32 +
+/// 2·radius)·width bytes each and as rows 256·channels·width.
 ///
 /// Sums run in f64 relative to a reference value for each block of pixels, so that rounding stays
 /// near 1e-15 of the local contrast; weights carry the error of [`KernelTable`].
@@ -93,7 +95,8 @@ pub struct Renderer<'a> {
     layout: Layout<'a>,
 }
 
-/// Memory for bands in work, in bytes; the number of bands at once follows.
+/// Memory for bands in work and for their finished rows, in bytes; the number of bands at once
+/// follows.
 const BAND_MEMORY: usize = 160 << 20;
 
 impl<'a> Renderer<'a> {
@@ -131,7 +134,7 @@ impl<'a> Renderer<'a> {
     /// Renders the window from top to bottom, handing finished rows to `sink`.
     ///
     /// # Errors
-    /// If the sink fails or the observer asks to stop.
+    /// If the sink fails, a pixel is not a finite number, or the observer asks to stop.
     pub fn stream(
         &self,
         observer: &dyn Observer,
@@ -142,8 +145,10 @@ impl<'a> Renderer<'a> {
         let watch = Watch::new(observer, window.height.into());
         let mut stats = RenderStats { samples: self.samples(), ..Default::default() };
         let bands = layout.bands();
+        // Of two groups: one is in work while the other's rows are handed over.
+        let rows = 2 * layout.row_bytes();
         let at_once =
-            (BAND_MEMORY / layout.band_bytes()).clamp(1, 4 * rayon::current_num_threads());
+            (BAND_MEMORY / (layout.band_bytes() + rows)).clamp(1, 4 * rayon::current_num_threads());
         let mut held = Held { first: bands.start, planes: VecDeque::new() };
         let mut finished: Vec<(i64, Vec<f32>)> = Vec::new();
         let mut next_row = block_range(window.y, window.height).start;
@@ -244,6 +249,9 @@ fn hand_over(
     values: &[f32],
     sink: &mut impl FnMut(Band<'_>) -> io::Result<()>,
 ) -> Result<(), RenderError> {
-    sink(Band { first_row: layout.pixel_rows(row).start as u32, values })?;
+    let first_row = layout.pixel_rows(row).start as u32;
+    let (window, channels) = (layout.window, layout.scene.channels());
+    check_finite(values, window.width, channels, first_row - window.y)?;
+    sink(Band { first_row, values })?;
     Ok(())
 }

@@ -10,9 +10,9 @@ use crate::{Channels, Frame};
 /// square before a soft background.
 ///
 /// Made to stand in for photographs of striped clothes: most of its energy outside the Nyquist
-/// region of a quarter-size image lies left, right and diagonally of it. Stripes have 90 to 205
-/// cycles to the image's width, so at 512 pixels all stay below 0.45 cycles per pixel and soft
-/// edges keep the rest below Nyquist but for a little.
+/// region of a quarter-size image lies left, right and diagonally of it. Stripes have 70 to 180
+/// cycles to the image's width, products of two in the weave 210: at 512 pixels all stay below 0.45
+/// cycles per pixel, and soft edges keep the rest below Nyquist but for a little.
 #[derive(Clone, Copy, Debug)]
 pub struct StripedCloth {
     size: DVec2,

@@ -10,8 +10,8 @@ use crate::{Channels, Frame};
 /// shadows: fine textures, hard edges and smooth shading, like the scene of the thesis's figure
 /// 5.10, which is not ours to ship.
 ///
-/// The sphere's stripes have about 195 cycles to the image's width, with a third harmonic, the
-/// floor's 110 to 260: in an image of 160 pixels most of the variance is finer than pixels, so that
+/// The sphere's stripes have 160 to 190 cycles to the image's width over most of it and ever more
+/// towards its silhouette, with a third harmonic, the floor's some 100 to 400: in an image of 160 pixels most of the variance is finer than pixels, so that
 /// every pattern has noise to show, and the few edges leave lattices an order of magnitude less.
 ///
 /// Procedural and deterministic; one ray and at most one shadow ray for each sample, no

@@ -4,6 +4,8 @@ mod file;
 mod render;
 mod standard;
 
+use std::collections::HashMap;
+
 use bn_core::DVec2;
 use thiserror::Error;
 
@@ -114,7 +116,7 @@ impl Supersampling {
     }
 
     /// n: samples taken for each pixel on average, as samples whose places differ by whole pixels
-    /// are shared between pixels.
+    /// are shared between pixels, and those of weight 0 are not needed. O(m).
     pub fn samples_per_pixel(&self) -> usize {
         self.classes().len()
     }
@@ -156,24 +158,27 @@ impl Supersampling {
     }
 
     /// Taps grouped by their place modulo whole pixels: samples of one class form a lattice with
-    /// one sample a pixel.
+    /// one sample a pixel. Taps of weight 0 need no sample. In order of the classes' first taps.
     fn classes(&self) -> Vec<Class> {
         let mut classes: Vec<Class> = Vec::new();
-        for tap in &self.taps {
+        let mut known = HashMap::new();
+        for tap in self.taps.iter().filter(|tap| tap.weight != 0.0) {
             // Rounded to 2⁻³⁰ pixels, so that rounding errors in a file don't take a class apart.
-            let grid = f64::from(1 << 30);
-            let snapped = (tap.offset * grid).round() / grid;
-            let shift = snapped.floor();
-            let residue = snapped - shift;
-            let weighted = (shift.x as i64, shift.y as i64, tap.weight);
-            match classes.iter_mut().find(|class| class.residue == residue) {
-                Some(class) => class.shifts.push(weighted),
-                None => classes.push(Class { residue, shifts: vec![weighted] }),
-            }
+            let snapped = (tap.offset * SNAP).round();
+            let shift = (snapped / SNAP).floor();
+            let within = snapped - shift * SNAP;
+            let class = *known.entry((within.x as i64, within.y as i64)).or_insert_with(|| {
+                classes.push(Class { residue: within / SNAP, shifts: Vec::new() });
+                classes.len() - 1
+            });
+            classes[class].shifts.push((shift.x as i64, shift.y as i64, tap.weight));
         }
         classes
     }
 }
+
+/// Places within a pixel that are told apart, along each axis.
+const SNAP: f64 = (1 << 30) as f64;
 
 /// Taps that share their samples.
 struct Class {

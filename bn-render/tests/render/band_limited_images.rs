@@ -111,6 +111,24 @@ fn images_that_do_not_repeat_are_found_too() {
     }
 }
 
+/// Whatever lies within the pixels' own band, by default: up to 0.48 cycles per pixel along both axes,
+/// with four samples a pixel of patterns that leave no large gaps.
+#[test]
+fn images_of_the_pixels_own_band_are_found_from_four_samples_a_pixel() {
+    let frame = frame(96, 70);
+    let kernel = kernel("lanczos2").expect("a kernel");
+    for frequencies in [[(0.47, 0.47), (0.3, -0.46)], [(0.48, 0.0), (0.0113, 0.007)]] {
+        let scene = waves(&frequencies);
+        let exact = exact_convolution(&scene, kernel, &frame, 1e-9, &Unobserved).expect("small");
+        let pattern = weighted(&jittered_set(64, 5), 4.0);
+        let options = BandLimitedOptions::default();
+        let (image, stats) = render(&scene, &pattern, LowPass::Kernel(kernel), frame, options);
+        let reached = psnr(&image, &exact.image);
+        assert!(reached >= 90.0 && stats.converged(), "{frequencies:?}: {reached} {stats:?}");
+        assert!(stats.iterations() <= 30);
+    }
+}
+
 #[test]
 fn windows_threads_and_channels_change_no_bit() {
     let whole = frame(70, 55);
@@ -201,13 +219,18 @@ fn what_cannot_be_is_refused() {
 
 #[test]
 fn usual_bands_leave_enough_samples() {
-    let band = BandLimitedOptions::usual_band;
+    let fade = |rate| BandLimitedOptions::usual_band(Border::Fade, rate);
+    let periodic = |rate| BandLimitedOptions::usual_band(Border::Periodic, rate);
     for (rate, want) in [(4.0, 0.5), (2.0, 0.5), (16.0, 1.0), (0.5, 0.25)] {
-        assert!((band(rate) - want).abs() < 1e-12, "{rate}");
+        assert!((periodic(rate) - want).abs() < 1e-12, "{rate}");
     }
-    for i in 1..200 {
-        let rate = f64::from(i) / 7.0;
-        let samples = rate / (2.0 * band(rate)).powi(2);
-        assert!((2.0 - 1e-12..=4.0 + 1e-12).contains(&samples), "{rate}: {samples}");
+    for (rate, want) in [(4.0, 7.0 / 12.0), (2.0, 0.5), (16.0, 1.0), (0.5, 0.25)] {
+        assert!((fade(rate) - want).abs() < 1e-12, "{rate}");
+    }
+    for rate in (1..200).map(|i| f64::from(i) / 7.0) {
+        for band in [fade(rate), periodic(rate)] {
+            let samples = rate / (2.0 * band).powi(2);
+            assert!((2.0 - 1e-12..=4.0 + 1e-12).contains(&samples), "{rate}: {samples}");
+        }
     }
 }

@@ -7,6 +7,7 @@ mod cancelling;
 mod common;
 mod grids;
 mod images;
+mod overflow;
 mod pattern;
 mod picture;
 mod prediction;

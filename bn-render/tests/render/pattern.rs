@@ -1,14 +1,9 @@
 //! Patterns on the image plane against the definition, tile by tile.
 
+use crate::common::random_set;
 use bn_core::{DVec2, PointSet, Seed};
 use bn_render::{Pattern, Rect, SampleList, TileVariation};
 use proptest::prelude::*;
-use rand::RngExt;
-
-fn random_set(n: usize, seed: u64) -> PointSet {
-    let mut rng = Seed::new(seed).stream(0);
-    PointSet::new((0..n).map(|_| DVec2::new(rng.random(), rng.random())).collect()).expect("a set")
-}
 
 fn samples(pattern: &Pattern, rect: &Rect) -> Vec<(f64, f64)> {
     let mut list = SampleList::default();

@@ -85,7 +85,7 @@ fn torn_seams_would_show() {
 const STEPS: i32 = 16;
 
 /// ∫∫ r(d) I / (∫r)² for the pixel whose centre is `at`, by the midpoint rule: its error is below
-/// (π f/16)²/6, 0.5 % of an amplitude, for frequencies f up to 1 cycle per pixel.
+/// (π f/16)²/6, 0.65 % of an amplitude, for frequencies f up to 1 cycle per pixel.
 fn convolved(scene: &dyn Scene, kernel: &dyn Kernel, at: DVec2) -> f64 {
     let reach = (kernel.radius() * f64::from(STEPS)) as i32;
     let offsets = || (-reach..reach).map(|i| (f64::from(i) + 0.5) / f64::from(STEPS));

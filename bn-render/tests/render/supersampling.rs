@@ -133,6 +133,29 @@ fn the_transfer_image_spans_four_times_nyquist() {
 }
 
 #[test]
+fn samples_of_no_weight_are_not_taken() {
+    let frame = Frame::new(8, 8).expect("a size");
+    let tap = |x: f64, y: f64, weight: f64| Tap { offset: DVec2::new(x, y), weight };
+    let taps = vec![tap(0.0, 0.0, 1.0), tap(0.3, 0.3, 0.0), tap(7.0, 0.0, 0.0)];
+    let pattern = Supersampling::new("mine", taps).expect("a pattern");
+    assert_eq!((pattern.samples_per_pixel(), pattern.weights_per_pixel()), (1, 3));
+    let (_, taken) = pattern.render(&Constant::grey(0.5), &frame, &Unobserved).expect("small");
+    assert_eq!(taken, 64);
+}
+
+#[test]
+fn as_many_taps_as_are_allowed_are_grouped() {
+    let side = 256;
+    assert_eq!(side * side, Supersampling::MAX_TAPS);
+    let place = |i: usize| i as f64 / 128.0 - 0.5;
+    let taps = (0..side * side)
+        .map(|i| Tap { offset: DVec2::new(place(i % side), place(i / side)), weight: 1.0 });
+    let pattern = Supersampling::new("dense", taps.collect()).expect("a pattern");
+    // Over 2 × 2 pixels, four weights share each sample.
+    assert_eq!(pattern.samples_per_pixel(), side * side / 4);
+}
+
+#[test]
 fn files_are_read_and_checked() {
     let read = |text: &str| Supersampling::parse("mine", text);
     let pattern = read("# two samples\n 0.25 0 3\n\n-0.25 0 # weight 1\n").expect("a pattern");

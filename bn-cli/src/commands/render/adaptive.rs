@@ -18,14 +18,10 @@ use crate::{Failure, Outcome};
 #[command(next_help_heading = "Adaptive sampling")]
 pub(super) struct AdaptiveArgs {
     /// Sample every block of 4x4 pixels at --spp (a fifth of it to judge the rest by), then four times
-    /// as densely again and again while the estimated root mean square error of the window around it,
-    /// 12x12 pixels, is above ERROR, in units of light: 0.01 is 40 dB. The error reached is told
-    #[arg(
-        long,
-        value_name = "ERROR",
-        conflicts_with = "supersampling",
-        allow_negative_numbers = true
-    )]
+    /// as densely again and again while the estimated root mean square error of the window around it
+    /// (12x12 pixels, 20x20 for sinc, cut at the borders of tiles of 128) is above ERROR, in units of
+    /// light: 0.01 is 40 dB. The error reached is told
+    #[arg(long, value_name = "ERROR", allow_negative_numbers = true)]
     adaptive: Option<f64>,
     /// The most samples per pixel that a block may get; the last step of four that doesn't exceed it
     /// is where refinement ends

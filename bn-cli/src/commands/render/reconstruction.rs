@@ -35,7 +35,7 @@ pub(super) struct ReconstructionArgs {
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// act, pocs: the frequencies of the fit along each axis, in cycles per pixel (default:
-    /// sqrt(spp)/4, for 2 to 4 spp 0.5, below sqrt(spp/8))
+    /// sqrt(spp)/4, but at low rates 7/12, or 1/2 with --border periodic, as far as sqrt(spp/8))
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     band: Option<f64>,
     /// act, pocs: beyond its border the image fades to its mean, or repeats itself (exact for scenes

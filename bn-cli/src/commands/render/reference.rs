@@ -116,7 +116,7 @@ impl Prepared {
                     "exact": made.converged,
                     "kernel": kernel.name(),
                     "change": made.change,
-                    "samples_per_pixel": made.samples_per_pixel,
+                    "spp": made.samples_per_pixel,
                 });
                 Ok((made.image, account))
             }

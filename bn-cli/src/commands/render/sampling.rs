@@ -1,7 +1,9 @@
 //! How the scene is sampled and reconstructed: a tiled pattern and a kernel, or a fixed few samples
 //! for each pixel.
 
-use std::path::{Path, PathBuf};
+use std::fs::File;
+use std::io::Read as _;
+use std::path::Path;
 
 use anyhow::anyhow;
 use bn_core::{DVec2, Observer, PointSet, Seed};
@@ -55,7 +57,8 @@ pub(super) struct SamplingArgs {
     /// Instead of a tiled pattern and a kernel: the same weighted samples for every pixel, one of the
     /// sets below or a text file of lines `x y weight` (offsets from the pixel's centre)
     #[arg(long, value_name = "SET|FILE",
-          conflicts_with_all = ["pattern", "spp", "normalize", "n", "seed", "options", "vary_tiles"])]
+          conflicts_with_all = ["pattern", "spp", "normalize", "n", "seed", "options", "vary_tiles",
+                                "reconstruct", "adaptive", "max_spp"])]
     supersampling: Option<String>,
     #[command(flatten)]
     reconstruction: ReconstructionArgs,
@@ -147,11 +150,6 @@ impl SamplingArgs {
     pub(super) fn sampling(&self, frame: &Frame, bar: &Bar) -> Outcome<(Sampling, Value)> {
         let fitted = self.reconstruction.band_limited()?;
         if let Some(name) = &self.supersampling {
-            if fitted.is_some() {
-                return Err(Failure::misuse(
-                    "--supersampling is a way from samples to pixels of its own: no --reconstruct",
-                ));
-            }
             let pattern = supersampling(name)?;
             let account = json!({
                 "supersampling": name,
@@ -278,13 +276,14 @@ fn supersampling(name: &str) -> Outcome<Supersampling> {
     if let Some(pattern) = bn_render::supersampling(name) {
         return Ok(pattern);
     }
-    let path = PathBuf::from(name);
-    let size = std::fs::metadata(&path).map(|file| file.len());
-    let text = match size {
-        Ok(size) if size > LONGEST => Err(format!("{size} bytes are no pattern")),
-        _ => std::fs::read_to_string(&path).map_err(|error| error.to_string()),
+    // Pipes and devices don't know their length.
+    let mut text = String::new();
+    let read = File::open(name).and_then(|file| file.take(LONGEST + 1).read_to_string(&mut text));
+    let read = match read {
+        Ok(length) if length as u64 > LONGEST => Err("it is too long for a pattern".to_owned()),
+        read => read.map_err(|error| error.to_string()),
     };
-    let text = text.map_err(|error| {
+    read.map_err(|error| {
         let known = SUPERSAMPLING.join(", ");
         Failure::misuse(format!("--supersampling {name}: {error}; there are {known}, and files"))
     })?;

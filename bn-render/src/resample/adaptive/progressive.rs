@@ -3,6 +3,7 @@
 use bn_core::{DVec2, PointSet, Seed};
 use rand::RngExt;
 
+use crate::pattern::check_rate;
 use crate::{Pattern, PatternError, TileVariation};
 
 /// Layers of one point set: every layer is the whole set, tiled at its own rate and shifted on the
@@ -33,8 +34,8 @@ impl ProgressivePattern {
         let first = pilot / (1.0 + Self::GROWTH);
         // Checks both: `most` need not be the rate of any layer, and from a first of 0 on layers would
         // have no end.
-        Pattern::tiled(set, first)?;
-        Pattern::tiled(set, most)?;
+        check_rate(first)?;
+        check_rate(most)?;
         let mut rates = vec![first, pilot - first];
         let (mut total, mut next) = (pilot, first * Self::GROWTH.powi(2));
         while total + next <= most {

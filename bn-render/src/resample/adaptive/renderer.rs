@@ -10,6 +10,7 @@ use super::TILE;
 use super::patches::{Axis, Source};
 use super::progressive::ProgressivePattern;
 use super::tile::{FinishedTile, Task, TileAccount, TileScratch};
+use crate::image::check_finite;
 use crate::resample::{Normalization, RenderError};
 use crate::watch::Watch;
 use crate::{Frame, Image, KernelTable, Scene};
@@ -19,7 +20,8 @@ use crate::{Frame, Image, KernelTable, Scene};
 /// Every block of 4 × 4 pixels begins with the pilot samples of a [`ProgressivePattern`] and goes
 /// from level to level, four times as densely each time, as long as the estimated error of the
 /// window around it exceeds `error`: the root mean square over the window's pixels (12 × 12, or 20 ×
-/// 20 for kernels of a radius above 4 pixels) and channels, in units of light. A block whose level
+/// 20 for kernels of a radius above 4 pixels; cut at the borders of the 128-pixel tiles in which the
+/// work is done) and channels, in units of light. A block whose level
 /// is the pattern's last stays as it is, and is counted.
 ///
 /// *Estimate.* A block's samples are those of its last layer. The layer before is a quarter as dense
@@ -190,7 +192,7 @@ impl<'a> AdaptiveRenderer<'a> {
         sink: &mut impl FnMut(AdaptiveBand<'_>) -> io::Result<()>,
     ) -> Result<(), RenderError> {
         let window = self.frame.window();
-        let channels = self.task.source.scene.channels().count();
+        let channels = self.task.source.scene.channels();
         let Some(&(_, row)) = places.first() else { return Ok(()) };
         let wanted = overlap(row, window.y, window.height);
         let (mut values, mut rates) = (Vec::new(), Vec::new());
@@ -201,11 +203,12 @@ impl<'a> AdaptiveRenderer<'a> {
                 let pixels = line * width + across.start..line * width + across.end;
                 rates.extend_from_slice(&tile.rates[pixels.clone()]);
                 values.extend_from_slice(
-                    &tile.values[pixels.start * channels..pixels.end * channels],
+                    &tile.values[pixels.start * channels.count()..pixels.end * channels.count()],
                 );
             }
         }
         let first_row = row * TILE + wanted.start as u32;
+        check_finite(&values, window.width, channels, first_row - window.y)?;
         sink(AdaptiveBand { first_row, values: &values, samples_per_pixel: &rates })?;
         Ok(())
     }
