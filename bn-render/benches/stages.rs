@@ -1,5 +1,5 @@
-//! Samples per second of the renderer: against nested loops, by kernel, by scene, and what skipping
-//! saves.
+//! Samples per second of the renderer: on one thread and all, by kernel, by scene, and what skipping
+//! saves (`cargo xtask bench --only skipping` has nested loops beside it).
 
 mod common;
 #[path = "../tests/render/common/silent.rs"]
@@ -7,10 +7,9 @@ mod silent;
 
 use std::hint::black_box;
 
-use bn_core::{DVec2, PointSet};
 use bn_render::{
-    Checkerboard, Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern, Renderer, SCENES,
-    Scene, SceneOptions, Window, ZonePlate, kernel, scene,
+    Checkerboard, Frame, KERNELS, KernelTable, Normalization, Pattern, Renderer, SCENES, Scene,
+    SceneOptions, Window, ZonePlate, kernel, scene,
 };
 use common::{frame, jittered};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -34,57 +33,13 @@ fn rendered(scene: &dyn Scene, pattern: &Pattern, table: &KernelTable, frame: &F
     stats.expect("nothing can fail").evaluated
 }
 
-/// What one writes first: for each sample all pixels within reach, one kernel value after another.
-fn nested_loops(
-    scene: &dyn Scene,
-    set: &PointSet,
-    spp: f64,
-    kernel: &dyn Kernel,
-    size: u32,
-) -> Vec<f64> {
-    let side = (set.len() as f64 / spp).sqrt();
-    let radius = kernel.radius();
-    let (mut sums, mut weights) =
-        (vec![0.0; (size * size) as usize], vec![0.0; (size * size) as usize]);
-    let tiles = (f64::from(size) / side) as i64 + 1;
-    for b in -1..=tiles {
-        for a in -1..=tiles {
-            for p in set.points() {
-                let at = (DVec2::new(a as f64, b as f64) + *p) * side;
-                let pixels = |x: f64| {
-                    let first = (x - radius - 0.5).ceil().max(0.0) as u32;
-                    let end = ((x + radius - 0.5).floor() + 1.0).clamp(0.0, f64::from(size)) as u32;
-                    first..end
-                };
-                if pixels(at.x).is_empty() || pixels(at.y).is_empty() {
-                    continue;
-                }
-                let value = scene.value(at)[0];
-                for j in pixels(at.y) {
-                    let wy = kernel.value(f64::from(j) + 0.5 - at.y);
-                    for i in pixels(at.x) {
-                        let w = wy * kernel.value(f64::from(i) + 0.5 - at.x);
-                        sums[(j * size + i) as usize] += w * value;
-                        weights[(j * size + i) as usize] += w;
-                    }
-                }
-            }
-        }
-    }
-    sums.iter().zip(&weights).map(|(sum, weight)| sum / weight).collect()
-}
-
-fn against_nested_loops(c: &mut Criterion) {
+fn threads_and_weights(c: &mut Criterion) {
     const SIZE: u32 = 256;
     let (frame, set) = (frame(SIZE, SIZE), jittered(64));
     let (plate, pattern, table) = (ZonePlate::new(&frame, 1.0), pattern(16.0), table("lanczos2"));
     let mut group = c.benchmark_group("zone-plate-256-16spp-lanczos2");
     group.throughput(Throughput::Elements(u64::from(SIZE * SIZE) * 16));
     group.sample_size(20);
-    group.bench_function("nested-loops", |b| {
-        let lanczos = kernel("lanczos2").expect("a kernel");
-        b.iter(|| nested_loops(&plate, black_box(&set), 16.0, lanczos, SIZE));
-    });
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
     group.bench_function("renderer-one-thread", |b| {
         one.install(|| b.iter(|| rendered(&plate, black_box(&pattern), &table, &frame)));
@@ -156,5 +111,5 @@ fn skipping(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, against_nested_loops, kernels, scenes, skipping);
+criterion_group!(benches, threads_and_weights, kernels, scenes, skipping);
 criterion_main!(benches);

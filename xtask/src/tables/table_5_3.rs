@@ -328,8 +328,8 @@ const ABOUT_MEAN: &str = "the same without the noise of the picture's mean, whic
 const DIFFERENT: f64 = 2.0;
 const WHY_DIFFERENT: Option<&str> = Some(
     "our sets and our picture give just this: plain convolution meets what their spectra let one expect \
-                             (\"128 spp, plain, expected\"), and a denser reference (\"128 spp, dense\") changes little; sets with \
-                             more power at low frequencies, or another picture, would give the thesis's number",
+     as a mean over sets and shifts (\"128 spp, plain, expected\"), and a denser reference (\"128 spp, dense\") \
+     changes little; sets with more power at low frequencies, or another picture, would give the thesis's number",
 );
 
 /// How good the reference itself is.

@@ -8,8 +8,9 @@ use std::path::Path;
 use anyhow::anyhow;
 use bn_core::{DVec2, Observer, PointSet, Seed};
 use bn_render::{
-    AdaptiveStats, BandLimitedStats, Frame, KERNELS, Kernel, KernelTable, Normalization, Pattern,
-    RenderError, RenderStats, Renderer, SUPERSAMPLING, Scene, Supersampling, TileVariation,
+    AdaptiveStats, BandLimitedOptions, BandLimitedStats, Frame, KERNELS, Kernel, KernelTable,
+    Normalization, Pattern, RenderError, RenderStats, Renderer, SUPERSAMPLING, Scene,
+    Supersampling, TileVariation,
 };
 use bn_samplers::Method;
 use clap::builder::PossibleValuesParser;
@@ -158,41 +159,13 @@ impl SamplingArgs {
             });
             return Ok((Sampling::Periodic(pattern), account));
         }
-        if self.reconstruction.by_voronoi() && self.vary_tiles != Vary::None {
-            return Err(Failure::misuse(
-                "tiles that vary cut through Voronoi cells: --vary-tiles needs --weights equal",
-            ));
-        }
-        if fitted.is_some() && self.normalize.is_some() {
-            return Err(Failure::misuse("--normalize concerns --reconstruct convolution only"));
-        }
-        // Rates are refused whatever the set.
-        let point = PointSet::new(vec![DVec2::ZERO]).map_err(Failure::failed)?;
-        Pattern::tiled(&point, self.spp)
-            .map_err(|error| Failure::misuse(format!("--spp: {error}")))?;
-        self.adaptive.check(self.spp)?;
-        if self.adaptive.is_wanted() && fitted.is_some() {
-            return Err(Failure::misuse("--adaptive goes with --reconstruct convolution only"));
-        }
-        if self.adaptive.is_wanted() && self.reconstruction.by_voronoi() {
-            return Err(Failure::misuse(
-                "--adaptive weighs samples alike: --weights voronoi does not go with it",
-            ));
-        }
-        if let Some(options) = &fitted {
-            reconstruction::check(options, frame, self.kernel(), self.spp)?;
-        }
+        self.check(fitted.as_ref(), frame)?;
         let name = self.pattern.as_deref().unwrap_or_default();
         let (set, account) = match bn_samplers::find(name) {
             Ok(method) => self.generated(method, bar)?,
             Err(unknown) => (self.read(name, unknown)?, json!({"file": name})),
         };
-        let variation = match self.vary_tiles {
-            Vary::None => TileVariation::Repeated,
-            Vary::Turn => TileVariation::Turned(self.tile_seed()),
-            Vary::Shift => TileVariation::Shifted(self.tile_seed()),
-            Vary::Both => TileVariation::TurnedAndShifted(self.tile_seed()),
-        };
+        let variation = self.variation();
         if let Some(options) = fitted {
             let pattern = self.reconstruction.pattern(&set, self.spp)?.varied(variation);
             let fitted = BandLimited { pattern, kernel: self.kernel(), options };
@@ -215,6 +188,45 @@ impl SamplingArgs {
         }
         let pattern = self.reconstruction.pattern(&set, self.spp)?.varied(variation);
         Ok((Sampling::Tiled(Box::new(Tiled { pattern, table, normalization })), account))
+    }
+
+    /// Refuses what makes no sense together, before a pattern is made or read.
+    fn check(&self, fitted: Option<&BandLimitedOptions>, frame: &Frame) -> Outcome {
+        if self.reconstruction.by_voronoi() && self.vary_tiles != Vary::None {
+            return Err(Failure::misuse(
+                "tiles that vary cut through Voronoi cells: --vary-tiles needs --weights equal",
+            ));
+        }
+        if fitted.is_some() && self.normalize.is_some() {
+            return Err(Failure::misuse("--normalize concerns --reconstruct convolution only"));
+        }
+        // Rates are refused whatever the set.
+        let point = PointSet::new(vec![DVec2::ZERO]).map_err(Failure::failed)?;
+        Pattern::tiled(&point, self.spp)
+            .map_err(|error| Failure::misuse(format!("--spp: {error}")))?;
+        self.adaptive.check(self.spp)?;
+        if self.adaptive.is_wanted() && fitted.is_some() {
+            return Err(Failure::misuse("--adaptive goes with --reconstruct convolution only"));
+        }
+        if self.adaptive.is_wanted() && self.reconstruction.by_voronoi() {
+            return Err(Failure::misuse(
+                "--adaptive weighs samples alike: --weights voronoi does not go with it",
+            ));
+        }
+        if let Some(options) = fitted {
+            reconstruction::check(options, frame, self.kernel(), self.spp)?;
+        }
+        Ok(())
+    }
+
+    /// How tiles vary.
+    fn variation(&self) -> TileVariation {
+        match self.vary_tiles {
+            Vary::None => TileVariation::Repeated,
+            Vary::Turn => TileVariation::Turned(self.tile_seed()),
+            Vary::Shift => TileVariation::Shifted(self.tile_seed()),
+            Vary::Both => TileVariation::TurnedAndShifted(self.tile_seed()),
+        }
     }
 
     /// The seed of what sets tiles apart, unlike that of any set.
