@@ -24,8 +24,11 @@ use super::{Channels, Image, ImageError, checked_len, malformed};
 pub fn read_exr(mut input: impl BufRead + Seek) -> Result<Image, ImageError> {
     let start = input.stream_position()?;
     let meta = MetaData::read_from_buffered(&mut input, false).map_err(from_exr)?;
-    let mut flat = meta.headers.iter().filter(|header| !header.deep);
-    let Some((header, wanted)) = flat.find_map(|h| Some((h, Wanted::of(h)?))) else {
+    let flat = || meta.headers.iter().filter(|header| !header.deep);
+    let wanted = flat().find_map(Wanted::of);
+    // The first part that has those channels, though another may have suggested them.
+    let found = wanted.and_then(|wanted| Some((flat().find(|h| wanted.is_in(h))?, wanted)));
+    let Some((header, wanted)) = found else {
         return Err(malformed("EXR", "there are no channels R, G, B or Y"));
     };
     let (width, height) = (header.layer_size.0, header.layer_size.1);
@@ -88,11 +91,18 @@ impl Wanted {
     /// Those of a layer, if it has any.
     fn of(header: &Header) -> Option<Self> {
         let list = &header.channels.list;
-        let find = |name: &str| list.iter().find(|c| c.name.to_string() == name);
-        match (find("R"), find("G"), find("B"), find("Y"), list.as_slice()) {
-            (Some(_), Some(_), Some(_), ..) => Some(Self::Rgb),
-            (.., Some(one), _) | (.., [one]) => Some(Self::One(one.name.clone())),
+        match (find(header, "Y"), list.as_slice()) {
+            _ if Self::Rgb.is_in(header) => Some(Self::Rgb),
+            (Some(one), _) | (_, [one]) => Some(Self::One(one.name.clone())),
             _ => None,
+        }
+    }
+
+    /// Whether a layer has them.
+    fn is_in(&self, header: &Header) -> bool {
+        match self {
+            Self::Rgb => ["R", "G", "B"].iter().all(|name| find(header, name).is_some()),
+            Self::One(name) => header.channels.list.iter().any(|c| c.name == *name),
         }
     }
 
@@ -102,6 +112,11 @@ impl Wanted {
             Self::One(_) => Channels::Grey,
         }
     }
+}
+
+/// The channel of a layer that has this name.
+fn find<'a>(header: &'a Header, name: &str) -> Option<&'a ChannelDescription> {
+    header.channels.list.iter().find(|channel| channel.name.to_string() == name)
 }
 
 /// Writes an image as an EXR file, values as they are, losslessly compressed.

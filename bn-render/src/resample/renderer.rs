@@ -86,8 +86,8 @@ pub struct Band<'a> {
 /// (square) support, samples outside the image included. Each sample is evaluated once. The result
 /// is the same to the bit for any number of threads, any window of the image and whether or not
 /// the scene tells where it is constant. Memory holds bands of 32 rows: two and, at once, as many as
-/// fit into 160 MB with the rows that they become (but at least one); 8·(1 + channels)·(32 +
-/// 2·radius)·width bytes each and as rows 256·channels·width.
+/// fit into 160 MB with the rows that they become (at least one, at most four a thread); 8·(1 +
+/// channels)·(32 + 2·radius)·width bytes each and as rows 128·channels·width.
 ///
 /// Sums run in f64 relative to a reference value for each block of pixels, so that rounding stays
 /// near 1e-15 of the local contrast; weights carry the error of [`KernelTable`].

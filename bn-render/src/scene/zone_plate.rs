@@ -12,7 +12,7 @@ use crate::{Channels, Frame, Rect};
 /// eq. 3.20, scaled): the local frequency is f·ρ/R, hence f cycles per pixel at ρ = R.
 ///
 /// Absolute error below 1e-15·(1 + 3 T) with T = f ρ²/2R, the phase in turns, which is rounded a few
-/// times: 4e-11 after ten thousand rings.
+/// times: 3e-11 after ten thousand rings.
 #[derive(Clone, Copy, Debug)]
 pub struct ZonePlate {
     center: DVec2,

@@ -110,7 +110,7 @@ impl Supersampling {
         &self.taps
     }
 
-    /// m: samples in the weighted sum of a pixel.
+    /// m: weights stated for a pixel, zeros included, though those need no sample.
     pub fn weights_per_pixel(&self) -> usize {
         self.taps.len()
     }

@@ -226,10 +226,10 @@ fn exr_keeps_every_bit() {
     }
 }
 
-/// The head of an uncompressed EXR file of 32-bit channels, and its rows if there is a value for them.
+/// The attributes of a part of 32-bit channels in an EXR file.
 #[cfg(feature = "exr")]
-fn exr_by_hand(names: &[String], [width, height]: [i32; 2], value: Option<f32>) -> Vec<u8> {
-    let mut file = vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0];
+fn exr_header(names: &[String], [width, height]: [i32; 2]) -> Vec<u8> {
+    let mut file = Vec::new();
     let mut attribute = |name: &str, kind: &str, value: &[u8]| {
         file.extend([name.as_bytes(), &[0], kind.as_bytes(), &[0]].concat());
         file.extend((value.len() as i32).to_le_bytes());
@@ -251,7 +251,19 @@ fn exr_by_hand(names: &[String], [width, height]: [i32; 2], value: Option<f32>) 
     attribute("pixelAspectRatio", "float", &1.0_f32.to_le_bytes());
     attribute("screenWindowCenter", "v2f", &[0; 8]);
     attribute("screenWindowWidth", "float", &1.0_f32.to_le_bytes());
-    file.push(0);
+    file
+}
+
+/// The start of an EXR file of one part, or of several.
+#[cfg(feature = "exr")]
+fn exr_start(parts: bool) -> Vec<u8> {
+    vec![0x76, 0x2f, 0x31, 0x01, 2, if parts { 0x10 } else { 0 }, 0, 0]
+}
+
+/// An uncompressed EXR file's head, and its rows if there is a value for them.
+#[cfg(feature = "exr")]
+fn exr_by_hand(names: &[String], [width, height]: [i32; 2], value: Option<f32>) -> Vec<u8> {
+    let mut file = [exr_start(false), exr_header(names, [width, height]), vec![0]].concat();
     let Some(value) = value else { return file };
     let (head, row) = (file.len() as u64 + 8 * height as u64, 4 * names.len() * width as usize);
     for y in 0..height as u64 {
@@ -293,4 +305,49 @@ fn exr_files_of_other_programs_are_read_as_far_as_they_make_sense() {
     ] {
         assert!(read(&exr_by_hand(&names, size, None)).is_err(), "{size:?}");
     }
+}
+
+/// Two parts, of which the second alone says which channel is meant: the first that has it is read.
+#[cfg(feature = "exr")]
+#[test]
+fn parts_of_exr_files_are_not_mixed_up() {
+    let attribute = |name: &str, kind: &str, value: &[u8]| {
+        let length = (value.len() as i32).to_le_bytes();
+        [name.as_bytes(), &[0], kind.as_bytes(), &[0], &length, value].concat()
+    };
+    let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+    let (first, second) = (names(&["A", "Z"]), names(&["Z"]));
+    let part = |name: &str, header: Vec<u8>, rows: i32| {
+        let of_part = [
+            attribute("name", "string", name.as_bytes()),
+            attribute("type", "string", b"scanlineimage"),
+            attribute("chunkCount", "int", &rows.to_le_bytes()),
+        ];
+        [header, of_part.concat(), vec![0]].concat()
+    };
+    let head = [
+        exr_start(true),
+        part("large", exr_header(&first, [5, 3]), 3),
+        part("small", exr_header(&second, [2, 1]), 1),
+        vec![0],
+    ];
+    let mut file = head.concat();
+    // A chunk: part, row, size, and all of a channel before the next.
+    let chunk = |part: i32, y: i32, values: &[f32]| {
+        let data: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+        [&part.to_le_bytes()[..], &y.to_le_bytes(), &(data.len() as i32).to_le_bytes(), &data]
+            .concat()
+    };
+    let row = [[9.0; 5], [0.25; 5]].concat();
+    let mut chunks: Vec<Vec<u8>> = (0..3).map(|y| chunk(0, y, &row)).collect();
+    chunks.push(chunk(1, 0, &[0.75; 2]));
+    let mut at = file.len() as u64 + 8 * chunks.len() as u64;
+    for chunk in &chunks {
+        file.extend(at.to_le_bytes());
+        at += chunk.len() as u64;
+    }
+    file.extend(chunks.concat());
+    let read = bn_render::read_exr(Cursor::new(&file)).expect("whole");
+    assert_eq!((read.width(), read.height()), (5, 3));
+    assert!(read.values().iter().all(|&value| value == 0.25));
 }

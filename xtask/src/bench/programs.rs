@@ -83,13 +83,13 @@ fn cases(quick: bool) -> Vec<Case> {
     vec![
         points,
         case(
-            "1080p, pattern made",
+            "pattern made",
             hd,
             &format!("--pattern jittered --seed {SEED} --spp 16 --kernel lanczos2 -o a.png"),
             runs,
         ),
         case(
-            "1080p, from a file",
+            "pattern from a file",
             hd,
             "--pattern points.rps --spp 16 --kernel lanczos2 -o b.png",
             runs,
@@ -97,19 +97,19 @@ fn cases(quick: bool) -> Vec<Case> {
         Case {
             pixels: window * window,
             ..case(
-                "64 × 64 pixels of 4k",
+                "a window",
                 (3840, 2160),
                 &format!("--pattern points.rps --spp 8 {at} -o c.png"),
                 runs,
             )
         },
+        case("fitted", (1024, 1024), "--pattern points.rps --spp 4 --reconstruct act -o d.png", 1),
         case(
-            "fitted, 1 megapixel",
-            (1024, 1024),
-            "--pattern points.rps --spp 4 --reconstruct act -o d.png",
+            "a large image, streamed",
+            (16_384, 16_384),
+            "--pattern points.rps --spp 1 -o e.png",
             1,
         ),
-        case("16k × 16k, streamed", (16_384, 16_384), "--pattern points.rps --spp 1 -o e.png", 1),
     ]
 }
 

@@ -39,9 +39,9 @@ const SHIFTS: u64 = 1;
 /// frequency of what is sampled, over some 1/8 cycle per pixel: 10/160 change it by less than 2 %.
 const TOGETHER: i32 = 10;
 
-/// Modes of patterns that predictions use, over √n: at 128 samples per pixel up to 18 cycles per pixel,
-/// where the picture's first copies end and the kernel passes little.
-const MODES: f64 = 1.6;
+/// Modes of patterns that predictions use, over √n: at 128 samples per pixel up to 25 cycles per pixel,
+/// where the picture's first copies have ended, at 24, and the kernel passes little.
+const MODES: f64 = 2.2;
 
 /// The large image, the kernel and what renderings are held against.
 pub(crate) struct Downsampling {
@@ -228,5 +228,22 @@ mod tests {
         assert!((got - want).abs() < 1e-3, "{got} {want}");
         // The interpolation took something: pixels alone have 0.16 + 0.045 + 0.02.
         assert!(got < 0.22, "{got}");
+        // Both waves are where they should be, up to half a group along each axis.
+        let near = |x: f64, y: f64| {
+            let group = 0.5 * f64::from(TOGETHER) / 12.0 + 1e-9;
+            let there = |line: &&SpectralLine| {
+                (line.frequency - DVec2::new(x, y) / 12.0).abs().max_element() <= group
+            };
+            details.lines().iter().filter(there).map(|line| line.power).sum::<f64>()
+        };
+        let kept = |cycles: f64| {
+            let x = std::f64::consts::PI * cycles / 96.0;
+            if x == 0.0 { 1.0 } else { (libm::sin(x) / x).powi(4) }
+        };
+        for (x, y, power) in [(9.0, -4.0, 0.0225), (0.0, 23.0, 0.01), (0.0, -23.0, 0.01)] {
+            let (got, want) = (near(x, y), power * kept(x) * kept(y));
+            assert!((got - want).abs() < 1e-6, "({x}, {y}): {got} {want}");
+            assert!(near(y, x) < 1e-6, "({y}, {x})");
+        }
     }
 }

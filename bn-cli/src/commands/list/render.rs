@@ -107,6 +107,6 @@ pub(super) fn write_supersampling(w: &mut dyn Write, sets: &[Set]) -> Result<()>
     }
     writeln!(
         w,
-        "\nn: samples a pixel, shared ones counted once\nm: weighted samples that a pixel sums"
+        "\nn: samples a pixel, shared ones counted once\nm: weights of a pixel, zeros included"
     )
 }
