@@ -70,11 +70,39 @@ impl ImageSpectrum {
     ///
     /// Lines lie at (i/W, j/H) for a frame of W × H pixels, as many as the image has pixels. What
     /// lies between the pixels (their interpolation) is not part of it, and edges where opposite
-    /// borders don't fit add power along the axes.
+    /// borders don't fit add power along the axes, which few patterns but lattices pick out:
+    /// [`ImageSpectrum::of_faded_image`] has no such edges.
     ///
     /// Powers are good to 1e-14 of the image's. Cost: an FFT of the image's size for each channel, and
     /// up to 80 bytes a pixel.
     pub fn of_image(image: &Image, frame: &Frame) -> Self {
+        Self::of_pixels(image, frame, |_| ())
+    }
+
+    /// The periodogram of an image that covers `frame` and need not repeat: what differs from a
+    /// channel's mean is faded to nothing at the borders, by a Tukey window over 1/16 of each side,
+    /// and scaled such that detail that fills the image evenly keeps its power. Nothing is faded along
+    /// sides shorter than 16 pixels.
+    ///
+    /// Otherwise as [`ImageSpectrum::of_image`], the mean's line too; a line leaves 4.7 % of its power to
+    /// its neighbours along each axis, most of it to the nearest 16.
+    pub fn of_faded_image(image: &Image, frame: &Frame) -> Self {
+        let [across, down] = [image.width(), image.height()].map(|side| tukey(side as usize));
+        Self::of_pixels(image, frame, |pixels| {
+            let mean = about_mean(pixels);
+            for (row, weight) in pixels.chunks_exact_mut(across.len()).zip(&down) {
+                row.iter_mut().zip(&across).for_each(|(value, w)| *value *= w * weight);
+            }
+            about_mean(pixels);
+            for value in pixels.iter_mut() {
+                *value += mean;
+            }
+        })
+    }
+
+    /// The mean over the channels of the periodograms of what `prepare` makes of their pixels, row by
+    /// row.
+    fn of_pixels(image: &Image, frame: &Frame, prepare: impl Fn(&mut [Complex<f64>])) -> Self {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let mut planner = Planner::<f64>::new();
         let transforms = [width, height].map(|length| planner.forward(length));
@@ -84,7 +112,8 @@ impl ImageSpectrum {
         let mut powers = vec![0.0; width * height];
         for channel in 0..channels {
             let values = image.values().iter().skip(channel).step_by(channels);
-            let rows: Vec<_> = values.map(|&v| Complex::new(f64::from(v), 0.0)).collect();
+            let mut rows: Vec<_> = values.map(|&v| Complex::new(f64::from(v), 0.0)).collect();
+            prepare(&mut rows);
             let rows = transformed(rows, &*transforms[0]);
             let columns = transformed(transposed(&rows, width), &*transforms[1]);
             let parts = powers.par_iter_mut().zip(&columns);
@@ -110,6 +139,27 @@ impl ImageSpectrum {
         self.lines.retain(|line| line.frequency != DVec2::ZERO);
         self
     }
+}
+
+/// Takes these values' mean from them, and returns it.
+fn about_mean(values: &mut [Complex<f64>]) -> Complex<f64> {
+    let mean = values.iter().sum::<Complex<f64>>() / values.len() as f64;
+    for value in values.iter_mut() {
+        *value -= mean;
+    }
+    mean
+}
+
+/// A side's weights: rising over 1/16 of it at both ends as half a cosine, of mean square 1.
+fn tukey(side: usize) -> Vec<f64> {
+    let ramp = side / 16;
+    let rise = |i: usize| {
+        let t = (i.min(side - 1 - i) as f64 + 0.5) / ramp as f64;
+        if t < 1.0 { 0.5 - 0.5 * libm::cos(std::f64::consts::PI * t) } else { 1.0 }
+    };
+    let weights: Vec<f64> = (0..side).map(rise).collect();
+    let scale = (side as f64 / weights.iter().map(|w| w * w).sum::<f64>()).sqrt();
+    weights.into_iter().map(|w| scale * w).collect()
 }
 
 /// The transforms of the rows, in place; each as long as the transform.
@@ -241,5 +291,49 @@ mod tests {
             let all = ImageSpectrum::of_image(&rgb, &frame).total_power();
             assert!((all - 5.0 / 3.0 * spectrum.total_power()).abs() < 1e-9, "{all}");
         }
+    }
+
+    /// A slope's ends don't fit: repeated, it has power 1/(2π² sin²) along its axis, which fading takes
+    /// away; waves keep theirs, wherever they lie between the lines, and constants stay constant.
+    #[test]
+    fn faded_images_have_no_edges_at_their_borders() {
+        let (width, height) = (128_u32, 96_u32);
+        let frame = Frame::new(width, height).expect("a size");
+        let image = |value: &dyn Fn(f64, f64) -> f64| {
+            let at = |i: u32| value(f64::from(i % width) + 0.5, f64::from(i / width) + 0.5) as f32;
+            let values = (0..width * height).map(at).collect();
+            Image::new(width, height, Channels::Grey, values).expect("fits")
+        };
+        let fast = |spectrum: &ImageSpectrum| {
+            let far = |line: &&SpectralLine| line.frequency.x.abs() > 0.25;
+            spectrum.lines().iter().filter(far).map(|line| line.power).sum::<f64>()
+        };
+        let slope = image(&|x, _| x / 128.0);
+        let (repeated, faded) = (
+            fast(&ImageSpectrum::of_image(&slope, &frame)),
+            fast(&ImageSpectrum::of_faded_image(&slope, &frame)),
+        );
+        // Σ 1/(4 W² sin²(πk/W)) over W/4 < |k|: nearly 1/(2πW).
+        assert!((repeated * std::f64::consts::TAU * 128.0 - 1.0).abs() < 0.1, "{repeated}");
+        assert!(faded < 2e-3 * repeated, "{faded} {repeated}");
+        let wave = PlaneWaves::new(0.4, vec![wave(0.2, 0.2113, -0.173, 0.1)]);
+        let seen = image(&|x, y| wave.value(DVec2::new(x, y))[0]);
+        let spectrum = ImageSpectrum::of_faded_image(&seen, &frame);
+        // Up to the power of the square of the window at twice the frequency.
+        assert!((spectrum.total_power() - 0.18).abs() < 2e-4, "{}", spectrum.total_power());
+        let flat = ImageSpectrum::of_faded_image(&image(&|_, _| 0.3), &frame).without_mean();
+        assert!(flat.total_power() < 1e-20, "{}", flat.total_power());
+        // Too small to be faded.
+        let small = Image::new(3, 1, Channels::Grey, vec![0.1, 0.7, 0.3]).expect("fits");
+        let frame = Frame::new(3, 1).expect("a size");
+        let powers = |spectrum: &ImageSpectrum| -> Vec<f64> {
+            spectrum.lines().iter().map(|line| line.power).collect()
+        };
+        let (want, got) = (
+            ImageSpectrum::of_image(&small, &frame),
+            ImageSpectrum::of_faded_image(&small, &frame),
+        );
+        let both = powers(&want).into_iter().zip(powers(&got));
+        both.for_each(|(want, got)| assert!((want - got).abs() < 1e-16, "{got} {want}"));
     }
 }

@@ -161,7 +161,8 @@ fn psnr(image: &Image, reference: &Image) -> Outcome<f64> {
 
 /// The power of an image that covers `frame`, continued bilinearly: that of its pixels, and the copies
 /// around their rate, which the interpolation weakens. The mean's, and that of all else, lines that lie
-/// close together taken as one.
+/// close together taken as one. Faded at the borders: edges there would put power on the axes, where the
+/// hexagonal lattice has its own, and double its noise.
 fn interpolated_spectrum(image: &Image, frame: &Frame) -> (ImageSpectrum, ImageSpectrum) {
     let rate = f64::from(image.width()) / f64::from(frame.width());
     let passed = |nu: f64| {
@@ -174,7 +175,7 @@ fn interpolated_spectrum(image: &Image, frame: &Frame) -> (ImageSpectrum, ImageS
     let side = (2 * reach + 1) as usize;
     let group = |nu: f64| ((nu / width).round() as i32 + reach) as usize;
     let mut powers = vec![0.0; side * side];
-    let (mut mean, pixels) = (0.0, ImageSpectrum::of_image(image, frame));
+    let (mut mean, pixels) = (0.0, ImageSpectrum::of_faded_image(image, frame));
     for line in pixels.lines() {
         for copy in 0..9 {
             let shift = DVec2::new(f64::from(copy % 3 - 1), f64::from(copy / 3 - 1)) * rate;
@@ -240,10 +241,11 @@ mod tests {
             let x = std::f64::consts::PI * cycles / 96.0;
             if x == 0.0 { 1.0 } else { (libm::sin(x) / x).powi(4) }
         };
+        // But for what fading at the borders spreads over some 16 lines along the axes, 4.7 % on each.
         for (x, y, power) in [(9.0, -4.0, 0.0225), (0.0, 23.0, 0.01), (0.0, -23.0, 0.01)] {
             let (got, want) = (near(x, y), power * kept(x) * kept(y));
-            assert!((got - want).abs() < 1e-6, "({x}, {y}): {got} {want}");
-            assert!(near(y, x) < 1e-6, "({y}, {x})");
+            assert!((got / want - 1.0).abs() < 0.04, "({x}, {y}): {got} {want}");
+            assert!(near(y, x) < 0.05 * want, "({y}, {x}): {}", near(y, x));
         }
     }
 }
