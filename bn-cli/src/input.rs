@@ -128,7 +128,9 @@ fn recognize(head: &[u8]) -> Format {
 /// the option where the mend is one.
 fn failure(error: ReadError) -> Failure {
     match error.problem() {
-        ReadProblem::OutOfDomain { .. } => Failure::misuse(format!("{error} (--wrap)")),
+        ReadProblem::OutOfDomain { .. } => {
+            Failure::misuse(format!("{error} (--wrap of bn analyze, report and convert)"))
+        }
         ReadProblem::Format(_) => {
             Failure::misuse(format!("{error} (--format; --from of bn convert)"))
         }

@@ -83,6 +83,8 @@ pub fn read_png(
             pixels.append(row.ok_or_else(|| malformed("PNG", "rows are missing"))?.data());
         }
     }
+    // Rows are complete before the checksum of the last of them is read.
+    reader.finish().map_err(from_decoding)?;
     Image::new(width, height, channels, pixels.values)
 }
 

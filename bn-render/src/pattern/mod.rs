@@ -20,7 +20,7 @@ pub use variation::TileVariation;
 #[non_exhaustive]
 pub enum PatternError {
     /// A number of samples per pixel that is not a number, or beyond all use.
-    #[error("{samples_per_pixel} samples per pixel are not possible; ask for 2⁻¹⁶ to 2¹⁶")]
+    #[error("{samples_per_pixel:?} samples per pixel are not possible; ask for 2⁻¹⁶ to 2¹⁶")]
     SamplesPerPixel {
         /// The number asked for.
         samples_per_pixel: f64,

@@ -65,7 +65,7 @@ pub enum SceneError {
         name: String,
     },
     /// A parameter is out of range.
-    #[error("the scene's {option} is {value}; it must be {must}")]
+    #[error("the scene's {option} is {value:?}; it must be {must}")]
     Option {
         /// The parameter's name.
         option: &'static str,

@@ -17,15 +17,17 @@ impl Supersampling {
             let content = line.split('#').next().unwrap_or_default();
             let numbers: Result<Vec<f64>, _> =
                 content.split_ascii_whitespace().map(str::parse).collect();
-            match numbers.as_deref() {
-                Ok([]) => {}
-                Ok(&[x, y]) => taps.push(Tap { offset: DVec2::new(x, y), weight: 1.0 }),
-                Ok(&[x, y, weight]) => taps.push(Tap { offset: DVec2::new(x, y), weight }),
-                _ => {
-                    let text = line.chars().take(80).collect();
-                    return Err(SupersamplingError::Line { line: i + 1, text });
-                }
-            }
+            let tap = match numbers.as_deref() {
+                Ok([]) => continue,
+                Ok(&[x, y]) => Some(Tap { offset: DVec2::new(x, y), weight: 1.0 }),
+                Ok(&[x, y, weight]) => Some(Tap { offset: DVec2::new(x, y), weight }),
+                _ => None,
+            };
+            let unusable = || {
+                let text = line.chars().take(80).collect();
+                SupersamplingError::Line { line: i + 1, text }
+            };
+            taps.push(tap.filter(Tap::is_usable).ok_or_else(unusable)?);
             if taps.len() > Self::MAX_TAPS {
                 return Err(SupersamplingError::Count { count: taps.len() });
             }

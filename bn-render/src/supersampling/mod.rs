@@ -24,6 +24,14 @@ pub struct Tap {
     pub weight: f64,
 }
 
+impl Tap {
+    /// Whether all is finite and the offset not beyond all use.
+    fn is_usable(&self) -> bool {
+        let near = |x: f64| x.abs() <= Supersampling::MAX_OFFSET;
+        self.weight.is_finite() && near(self.offset.x) && near(self.offset.y)
+    }
+}
+
 /// Why taps don't make a supersampling pattern.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -35,7 +43,7 @@ pub enum SupersamplingError {
         count: usize,
     },
     /// An offset or weight is not finite, or an offset is beyond all use.
-    #[error("sample {index} is not usable: offsets must lie within ±{max} pixels", max = Supersampling::MAX_OFFSET)]
+    #[error("sample {index} is not usable: offsets must lie within ±{max} pixels, and weights be finite", max = Supersampling::MAX_OFFSET)]
     Tap {
         /// The tap's position in the list, from 0.
         index: usize,
@@ -46,8 +54,8 @@ pub enum SupersamplingError {
         /// Their sum.
         sum: f64,
     },
-    /// A line of a file is not two or three numbers.
-    #[error("line {line} is not an offset x y and a weight: {text:?}")]
+    /// A line of a file is not two or three numbers of the ranges allowed.
+    #[error("line {line} is not an offset x y within ±{max} pixels and a finite weight: {text:?}", max = Supersampling::MAX_OFFSET)]
     Line {
         /// The line's number, from 1.
         line: usize,
@@ -82,11 +90,7 @@ impl Supersampling {
         if taps.is_empty() || taps.len() > Self::MAX_TAPS {
             return Err(SupersamplingError::Count { count: taps.len() });
         }
-        let usable = |tap: &Tap| {
-            tap.weight.is_finite() && tap.offset.abs().max_element() <= Self::MAX_OFFSET
-        };
-        // NaN compares false, so it is caught too.
-        if let Some(index) = taps.iter().position(|tap| !usable(tap) || tap.offset.is_nan()) {
+        if let Some(index) = taps.iter().position(|tap| !tap.is_usable()) {
             return Err(SupersamplingError::Tap { index });
         }
         let sum: f64 = taps.iter().map(|tap| tap.weight).sum();

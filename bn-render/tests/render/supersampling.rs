@@ -164,8 +164,16 @@ fn files_are_read_and_checked() {
     assert!(matches!(read(""), Err(SupersamplingError::Count { count: 0 })));
     assert!(matches!(read("0 0\n1 2 x\n"), Err(SupersamplingError::Line { line: 2, .. })));
     assert!(matches!(read("1 2 3 4"), Err(SupersamplingError::Line { line: 1, .. })));
-    assert!(matches!(read("0 nan"), Err(SupersamplingError::Tap { index: 0 })));
-    assert!(matches!(read("0 0\n0 1e9"), Err(SupersamplingError::Tap { index: 1 })));
-    assert!(matches!(read("0 0 inf"), Err(SupersamplingError::Tap { index: 0 })));
+    assert!(matches!(read("0 nan"), Err(SupersamplingError::Line { line: 1, .. })));
+    assert!(matches!(read("0 0\n\n0 1e9"), Err(SupersamplingError::Line { line: 3, .. })));
+    assert!(matches!(read("0 0 inf"), Err(SupersamplingError::Line { line: 1, .. })));
+    for (x, y, weight) in [(f64::NAN, 0.0, 1.0), (0.0, -65.0, 1.0), (0.0, 0.0, f64::INFINITY)] {
+        let taps = vec![
+            Tap { offset: DVec2::ZERO, weight: 1.0 },
+            Tap { offset: DVec2::new(x, y), weight },
+        ];
+        let refused = Supersampling::new("mine", taps);
+        assert!(matches!(refused, Err(SupersamplingError::Tap { index: 1 })));
+    }
     assert!(matches!(read("0 0 1\n0.5 0 -1"), Err(SupersamplingError::Weights { .. })));
 }

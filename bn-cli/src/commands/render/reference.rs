@@ -67,7 +67,7 @@ impl Reference {
                 );
                 if got != want {
                     return Err(Failure::misuse(format!(
-                        "{} has {}×{} pixels of {} channels; the rendering has {}×{} of {}",
+                        "--reference {}: its {}×{} pixels have {} channel(s); the rendering has {}×{} of {}",
                         path.display(),
                         got.0,
                         got.1,
@@ -83,7 +83,8 @@ impl Reference {
             &Self::Hexagonal(spp) => {
                 let lattice = bn_samplers::Hexagonal.sample(LATTICE, Seed::new(1), &Unobserved);
                 let lattice = lattice.map_err(|error| Failure::failed(anyhow!(error)))?.points;
-                let pattern = Pattern::tiled(&lattice, spp).map_err(Failure::usage)?;
+                let pattern = Pattern::tiled(&lattice, spp)
+                    .map_err(|error| Failure::misuse(format!("--reference: {error}")))?;
                 Ok(Prepared::Hexagonal(pattern))
             }
         }

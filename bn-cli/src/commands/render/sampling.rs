@@ -39,7 +39,8 @@ pub(super) struct SamplingArgs {
           value_parser = PossibleValuesParser::new(KERNELS.iter().map(|kernel| kernel.name())))]
     kernel: Option<String>,
     /// Divide by the kernel's weights that met samples, or by what they are on average (default:
-    /// density)
+    /// density). Weights of either sign may all but cancel where few random samples lie: such pixels
+    /// of `stochastic` run wild at density
     #[arg(long, value_name = "HOW")]
     normalize: Option<Normalize>,
     /// Points of a method's pattern (default: 4096)
@@ -56,7 +57,8 @@ pub(super) struct SamplingArgs {
     #[arg(long, value_name = "HOW", default_value = "none")]
     vary_tiles: Vary,
     /// Instead of a tiled pattern and a kernel: the same weighted samples for every pixel, one of the
-    /// sets below or a text file of lines `x y weight` (offsets from the pixel's centre)
+    /// sets below or a text file of lines `x y weight` (offsets from the pixel's
+    /// centre; weight 1 where left out)
     #[arg(long, value_name = "SET|FILE",
           conflicts_with_all = ["pattern", "spp", "normalize", "n", "seed", "options", "vary_tiles",
                                 "reconstruct", "adaptive", "max_spp"])]
@@ -264,7 +266,9 @@ impl SamplingArgs {
     fn read(&self, name: &str, unknown: impl std::fmt::Display) -> Outcome<PointSet> {
         let path = Path::new(name);
         if path.extension().is_none() && !path.exists() && name != "-" {
-            return Err(Failure::misuse(format!("{unknown}, and no file of that name either")));
+            return Err(Failure::misuse(format!(
+                "{unknown}; a file of that name is not there either (`bn list` names the methods)"
+            )));
         }
         if self.n.is_some() || !self.options.is_empty() {
             return Err(Failure::misuse(format!(

@@ -13,7 +13,8 @@ use crate::{Failure, Outcome, image_file};
 #[command(next_help_heading = "Scene")]
 pub(super) struct SceneArgs {
     /// A scene by name (below), or an image file: .png, .pfm or .exr. PNG values are taken to linear
-    /// light by the curve that the file names (sRGB or gAMA), else sRGB's; the others are linear
+    /// light by the curve that the file names (sRGB or gAMA), else sRGB's; the others are linear.
+    /// Alpha is ignored
     #[arg(value_name = "SCENE")]
     pub(super) scene: String,
     /// Size of the image in pixels (default: 512x512, or that of the image file)
