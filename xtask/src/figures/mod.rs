@@ -108,7 +108,16 @@ impl FigureSpec {
 pub(crate) struct Drawn {
     pub(crate) id: &'static str,
     pub(crate) title: &'static str,
-    pub(crate) files: Vec<PathBuf>,
+    pub(crate) pages: Vec<DrawnPage>,
+}
+
+/// A page of a figure that is on disk.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct DrawnPage {
+    /// What tells it from the figure's other pages, in words; may be empty.
+    pub(crate) part: String,
+    /// The SVG file.
+    pub(crate) file: PathBuf,
 }
 
 /// All figures; those that have been drawn are not drawn again unless `fresh`.
@@ -116,13 +125,13 @@ pub(crate) fn drawn(quick: bool, fresh: bool) -> Outcome<Vec<Drawn>> {
     let one = |figure: &'static FigureSpec| {
         let studio = figure.studio(quick)?;
         let kept = if fresh { None } else { studio.finished() };
-        let files = if let Some(files) = kept {
-            files
+        let pages = if let Some(pages) = kept {
+            pages
         } else {
             draw(figure, quick)?;
             studio.finished().unwrap_or_default()
         };
-        Ok(Drawn { id: figure.id, title: figure.title, files })
+        Ok(Drawn { id: figure.id, title: figure.title, pages })
     };
     select(&[])?.into_iter().map(one).collect()
 }

@@ -10,6 +10,7 @@ use bn_cli::{Failure, Outcome, output};
 use bn_core::PointSet;
 use serde_json::{Value, json};
 
+use super::DrawnPage;
 use crate::measure::{Plan, Store, make};
 use crate::thesis::RowSpec;
 
@@ -69,6 +70,14 @@ impl Studio {
         self.folder.join(format!("figure_{}{dash}{part}.{extension}", self.id.replace('.', "_")))
     }
 
+    /// What tells the file of this name from others of the figure, in words.
+    fn part(&self, name: &str) -> String {
+        let whole = self.place("", "svg");
+        let stem = whole.file_stem().unwrap_or_default().to_string_lossy();
+        let part = name.strip_prefix(&*stem).and_then(|rest| rest.strip_suffix(".svg"));
+        part.unwrap_or_default().replace('-', " ").trim().to_owned()
+    }
+
     /// How the figure is made, for its files to carry.
     pub(crate) fn provenance(&self) -> String {
         format!("cargo xtask figures --only {}", self.id)
@@ -95,10 +104,14 @@ impl Studio {
         output::write_file(&self.place("", "json"), |w| Ok(writeln!(w, "{pages:#}")?))
     }
 
-    /// The files of the figure's pages, if all have been drawn and are there.
-    pub(super) fn finished(&self) -> Option<Vec<PathBuf>> {
+    /// The figure's pages, if all have been drawn and are there.
+    pub(super) fn finished(&self) -> Option<Vec<DrawnPage>> {
         let noted: Value = serde_json::from_slice(&fs::read(self.place("", "json")).ok()?).ok()?;
-        let page = |name: &Value| Some(self.folder.join(name.as_str()?)).filter(|p| p.exists());
+        let page = |name: &Value| {
+            let name = name.as_str()?;
+            let file = Some(self.folder.join(name)).filter(|file| file.exists())?;
+            Some(DrawnPage { part: self.part(name), file })
+        };
         noted["pages"].as_array()?.iter().map(page).collect()
     }
 }
@@ -123,14 +136,18 @@ mod tests {
     fn a_figure_is_complete_when_it_says_so_and_its_pages_are_there() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let studio = Studio::new(folder.path(), "4.6", true).expect("writable");
-        for part in ["b", "a"] {
+        for part in ["b-c", "a", ""] {
             studio.page(part, &Page::new()).expect("written");
         }
         assert_eq!(studio.finished(), None);
         studio.finish().expect("written");
-        let pages = ["b", "a"].map(|part| studio.place(part, "svg"));
+        let page = |part: &str, file: &str| DrawnPage {
+            part: part.to_owned(),
+            file: studio.place(file, "svg"),
+        };
+        let pages = [page("b c", "b-c"), page("a", "a"), page("", "")];
         assert_eq!(studio.finished().as_deref(), Some(&pages[..]));
-        fs::remove_file(&pages[1]).expect("there");
+        fs::remove_file(&pages[1].file).expect("there");
         assert_eq!(studio.finished(), None);
     }
 

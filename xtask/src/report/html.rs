@@ -102,6 +102,12 @@ fn name(figure: &FigureEntry, picture: usize) -> String {
     format!("picture-{}-{picture}", figure.id.replace('.', "-"))
 }
 
+/// What stands below a picture: the figure's title, and which part of it this is.
+fn caption(figure: &FigureEntry, picture: &Picture) -> String {
+    let comma = if picture.part.is_empty() { "" } else { ", " };
+    escape(&format!("{}{comma}{}", figure.title, picture.part))
+}
+
 /// A small view of each picture: the same data as below, not a second copy.
 fn thumbnails(figure: &FigureEntry) -> String {
     let mut html = String::new();
@@ -112,7 +118,7 @@ fn thumbnails(figure: &FigureEntry) -> String {
             "<a href=\"#figure-{0}\"><svg viewBox=\"0 0 {width:.1} {height:.1}\" role=\"img\" \
              aria-label=\"figure {0}\"><use href=\"#{name}\"/></svg>{0}: {1}</a>",
             escape(figure.id),
-            escape(figure.title),
+            caption(figure, picture),
         );
     }
     html
@@ -121,12 +127,14 @@ fn thumbnails(figure: &FigureEntry) -> String {
 fn figure_section(figure: &FigureEntry) -> String {
     let (id, title) = (escape(figure.id), escape(figure.title));
     let mut html = format!("<section id=\"figure-{id}\">\n<h3>Figure {id}: {title}</h3>\n");
-    for (i, Picture { size: (width, height), uri }) in figure.pictures.iter().enumerate() {
+    for (i, picture) in figure.pictures.iter().enumerate() {
+        let Picture { size: (width, height), uri, .. } = picture;
         let _ = writeln!(
             html,
             "<figure><svg width=\"{width:.1}\" height=\"{height:.1}\" viewBox=\"0 0 {width:.1} {height:.1}\" \
-             role=\"img\" aria-label=\"{title}\"><image id=\"{}\" width=\"{width:.1}\" \
+             role=\"img\" aria-label=\"{}\"><image id=\"{}\" width=\"{width:.1}\" \
              height=\"{height:.1}\" href=\"{uri}\"/></svg></figure>",
+            caption(figure, picture),
             name(figure, i)
         );
     }
@@ -143,7 +151,8 @@ mod tests {
         let text = "## Table 5.3: x\n\n| m | verdict |\n| :-- | :-- |\n| a | ok |\n".to_owned();
         let tally = serde_json::from_str(r#"{"agrees": 1}"#).expect("a tally");
         let tables = [TableEntry { id: "5.3", tally, text }];
-        let picture = Picture { size: (10.0, 5.0), uri: "data:image/png;base64,QQ==".to_owned() };
+        let uri = "data:image/png;base64,QQ==".to_owned();
+        let picture = Picture { part: "fpo".to_owned(), size: (10.0, 5.0), uri };
         let figures = [FigureEntry {
             id: "5.7",
             title: "peaks & steps",
@@ -154,7 +163,8 @@ mod tests {
         assert_eq!(html.matches("<use href=\"#picture-5-7-1\"/>").count(), 1);
         assert_eq!(html.matches("id=\"picture-5-7-1\"").count(), 1);
         assert!(html.contains("<td><a href=\"#table-5.3\">5.3</a></td><td class=\"right\">1</td>"));
-        assert!(html.contains("peaks &amp; steps"));
+        assert_eq!(html.matches("5.7: peaks &amp; steps, fpo</a>").count(), 2);
+        assert!(html.contains("<h3>Figure 5.7: peaks &amp; steps</h3>"));
         // Nothing is fetched: every reference is to the page itself or data.
         for reference in html.split("href=\"").skip(1) {
             assert!(

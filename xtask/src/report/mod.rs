@@ -4,11 +4,10 @@ mod html;
 mod markdown;
 mod picture;
 
-use std::path::PathBuf;
-
 use bn_cli::{Outcome, output};
 use clap::Args;
 
+use crate::figures::DrawnPage;
 use crate::tables::{Kept, Tally};
 use crate::{figures, tables, workspace};
 use html::{FigureEntry, TableEntry};
@@ -67,8 +66,8 @@ fn table_entries(args: &ReportArgs) -> Outcome<Vec<TableEntry>> {
 
 fn figure_entries(args: &ReportArgs) -> Outcome<Vec<FigureEntry>> {
     let entry = |figure: figures::Drawn| {
-        let picture = |path: &PathBuf| Picture::read(path, cfg!(feature = "png"));
-        let pictures = figure.files.iter().map(picture).collect::<Outcome<_>>()?;
+        let picture = |page: DrawnPage| Picture::read(page, cfg!(feature = "png"));
+        let pictures = figure.pages.into_iter().map(picture).collect::<Outcome<_>>()?;
         Ok(FigureEntry { id: figure.id, title: figure.title, pictures })
     };
     figures::drawn(args.quick, args.fresh)?.into_iter().map(entry).collect()

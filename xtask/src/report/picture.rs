@@ -6,9 +6,13 @@ use std::path::Path;
 use anyhow::Context as _;
 use bn_cli::{Failure, Outcome};
 
+use crate::figures::DrawnPage;
+
 /// A picture and its size as it is to be shown.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Picture {
+    /// What tells it from others of its figure; may be empty.
+    pub(super) part: String,
     /// Width and height in CSS pixels.
     pub(super) size: (f64, f64),
     /// The file as a data URI.
@@ -19,9 +23,10 @@ pub(super) struct Picture {
 const PIXELS: f64 = 4.0 / 3.0;
 
 impl Picture {
-    /// The page at `path` (an SVG file), or the PNG file beside it if `rasters` are asked for, there
-    /// is one no older, and it is the smaller.
-    pub(super) fn read(path: &Path, rasters: bool) -> Outcome<Self> {
+    /// The page's SVG file, or the PNG file beside it if `rasters` are asked for, there is one no
+    /// older, and it is the smaller.
+    pub(super) fn read(page: DrawnPage, rasters: bool) -> Outcome<Self> {
+        let path = page.file.as_path();
         let text = fs::read_to_string(path)
             .with_context(|| format!("cannot read {}", path.display()))
             .map_err(Failure::failed)?;
@@ -35,7 +40,7 @@ impl Picture {
             Some(bytes) => bn_cli::plot::data_uri("image/png", &bytes),
             None => bn_cli::plot::data_uri("image/svg+xml", text.as_bytes()),
         };
-        Ok(Self { size, uri })
+        Ok(Self { part: page.part, size, uri })
     }
 }
 
@@ -60,18 +65,21 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("figure.svg");
         fs::write(&path, Page::new().titled(Text::plain("a test")).to_svg()).expect("written");
-        let vectors = Picture::read(&path, true).expect("read");
+        let page = DrawnPage { part: "a part".to_owned(), file: path.clone() };
+        let read = |rasters: bool| Picture::read(page.clone(), rasters);
+        let vectors = read(true).expect("read");
+        assert_eq!(vectors.part, "a part");
         assert!(vectors.uri.starts_with("data:image/svg+xml;base64,PHN2Zy"), "{}", vectors.uri);
         // A page has borders of 10 points and is 240 wide at least.
         assert_eq!(vectors.size.0, PIXELS * 260.0);
         fs::write(folder.path().join("figure.png"), b"png").expect("written");
-        let raster = Picture::read(&path, true).expect("read");
+        let raster = read(true).expect("read");
         assert_eq!(
             raster,
             Picture { uri: "data:image/png;base64,cG5n".to_owned(), ..vectors.clone() }
         );
-        assert_eq!(Picture::read(&path, false).expect("read"), vectors);
+        assert_eq!(read(false).expect("read"), vectors);
         fs::write(&path, "<svg/>").expect("written");
-        assert!(Picture::read(&path, true).is_err());
+        assert!(read(true).is_err());
     }
 }
