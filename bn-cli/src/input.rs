@@ -19,6 +19,12 @@ use crate::{Failure, Outcome};
 /// A file that is bad or absent is bad input; a disk that fails is a failure.
 pub fn read(path: &Path, format: Option<Format>, wrap: bool) -> Outcome<Ensemble> {
     let options = ReadOptions { wrap };
+    if path.is_dir() {
+        return Err(Failure::misuse(format!(
+            "{} is a folder, not a file of points",
+            path.display()
+        )));
+    }
     if can_be_read_again(path) {
         return io::read_path(path, format, options).map_err(failure);
     }
@@ -131,9 +137,9 @@ fn failure(error: ReadError) -> Failure {
         ReadProblem::OutOfDomain { .. } => {
             Failure::misuse(format!("{error} (--wrap of bn analyze, report and convert)"))
         }
-        ReadProblem::Format(_) => {
-            Failure::misuse(format!("{error} (--format; --from of bn convert)"))
-        }
+        ReadProblem::Format(_) => Failure::misuse(format!(
+            "{error} (--format of bn analyze and report, --from of bn convert)"
+        )),
         // Its text is part of the error's own.
         ReadProblem::Npy(_) => Failure::misuse(error),
         ReadProblem::Io(io) if !leads_nowhere(io) => Failure::failed(anyhow!(error)),

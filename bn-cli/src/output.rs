@@ -52,8 +52,11 @@ pub fn write_seekable<T>(path: &Path, write: impl FnOnce(File) -> Outcome<T>) ->
 /// Whether a file of this name could be made, as far as that can be told beforehand.
 ///
 /// # Errors
-/// If there is no such folder.
+/// If there is no such folder, or the name is that of a folder.
 pub fn check_folder(path: &Path) -> Outcome {
+    if path.is_dir() {
+        return Err(Failure::failed(anyhow!("cannot write {}: it is a folder", path.display())));
+    }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder {
         Some(folder) if !folder.is_dir() => Err(Failure::failed(anyhow::anyhow!(
@@ -63,6 +66,12 @@ pub fn check_folder(path: &Path) -> Outcome {
         ))),
         _ => Ok(()),
     }
+}
+
+/// Whether writing `output` would replace what is read from `input`.
+pub fn replaces(output: &Path, input: &Path) -> bool {
+    let real = |path: &Path| path.canonicalize().ok().filter(|real| real.is_file());
+    real(input).is_some_and(|input| real(output) == Some(input))
 }
 
 /// Lets `write` fill the file that is to be `path` and gives it that name, if all went well.

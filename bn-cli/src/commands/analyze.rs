@@ -158,12 +158,8 @@ impl Analyze {
         {
             return Err(Failure::misuse("--method belongs to the curve radial-power alone"));
         }
-        let same = |file: &PathBuf, output: &Path| {
-            let real = |path: &Path| path.canonicalize().ok();
-            real(file).is_some_and(|file| Some(file) == real(output))
-        };
         if let Some(output) = &self.output
-            && self.files.iter().any(|file| same(file, output))
+            && self.files.iter().any(|file| output::replaces(output, file))
         {
             let name = output.display();
             return Err(Failure::misuse(format!("-o {name}: the curve would replace its points")));

@@ -25,7 +25,7 @@ fn the_error_asked_for_is_reached_and_told() {
     assert!(stated <= 0.03 && number(&account, "error_worst") <= 0.03);
     assert!((0.4..1.5).contains(&(truth / stated)), "{truth} {stated}");
     assert!((truth * truth - number(&account, "mse")).abs() < 1e-12);
-    assert_eq!((&account["spp"], &account["max_spp"]), (&4.0.into(), &1024.0.into()));
+    assert_eq!((&account["spp"], &account["max_spp"]), (&4.0.into(), &1100.0.into()));
     assert_eq!((&account["blocks"], &account["blocks_unresolved"]), (&(24 * 20).into(), &0.into()));
     let refined = account["blocks_refined"].as_u64().unwrap();
     assert!((60..300).contains(&refined), "{refined}");

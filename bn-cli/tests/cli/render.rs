@@ -243,6 +243,12 @@ fn bad_use_is_refused_with_a_reason() {
         ("render zone-plate --pattern absent.txt --reconstruct act --band 0 -o a.png", "--band 0"),
         ("render zone-plate --pattern absent.txt --reference nan -o a.png", "samples per pixel"),
         ("render zone-plate --pattern absent.txt --reference light.pfm -o a.png", "512×512"),
+        ("render zone-plate --pattern absent.txt --reference words -o a.png", "`exact`"),
+        ("render zone-plate --pattern . -o a.png", "folder"),
+        // What is read stays as it is.
+        ("render light.pfm --pattern one.txt -o light.pfm", "replace"),
+        ("render zone-plate --pattern one.txt -o ./one.txt --format png", "replace"),
+        ("render zone-plate --pattern halton --reference light.pfm --error light.pfm", "replace"),
         #[cfg(unix)]
         ("render zone-plate --supersampling /dev/zero -o a.png", "too long"),
     ] {
@@ -253,13 +259,15 @@ fn bad_use_is_refused_with_a_reason() {
         ("-o a.jpg", ".png"),
         ("-o -", "--format"),
         ("-o - --format png --json", "--json"),
+        ("-o a.png --format exr", "--format"),
+        ("--reconstruct act --tolerance 1 -o a.png", "--tolerance 1"),
         ("--spp 0 -o a.png", "samples per pixel"),
         ("--spp nan -o a.png", "samples per pixel"),
         ("--spp -3 -o a.png", "samples per pixel"),
-        ("--size 0x4 -o a.png", "0×4"),
+        ("--size 0x4 -o a.png", "--size: an image of 0×4"),
         ("--size 4 -o a.png", "640x480"),
         ("--size 99999999x2 -o a.png", "99999999"),
-        ("--crop 500,500,100,1 -o a.png", "window"),
+        ("--crop 500,500,100,1 -o a.png", "--crop: a window"),
         ("--kernel nosuch -o a.png", "lanczos2"),
         ("--frequency inf -o a.png", "frequency"),
         ("--error e.png -o a.png", "--reference"),
@@ -283,7 +291,11 @@ fn bad_use_is_refused_with_a_reason() {
         folder.bn(&format!("{plate} {words}")).refused(2, &[said]);
     }
     folder.bn(&format!("{plate} --size 8x8 -o absent/a.png")).refused(1, &["absent"]);
-    assert_eq!(folder.names(), ["light.pfm", "one.txt", "two.dat", "words.png"]);
+    std::fs::create_dir(folder.path().join("sub.png")).expect("made");
+    folder
+        .bn(&format!("{plate} --size 8x8 --reference 4 --error sub.png -o a.png"))
+        .refused(1, &["folder"]);
+    assert_eq!(folder.names(), ["light.pfm", "one.txt", "sub.png", "two.dat", "words.png"]);
 }
 
 #[test]

@@ -12,9 +12,10 @@ use ::exr::meta::{BlockDescription, MetaData};
 use ::exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, SmallVec, read};
 use rayon::prelude::*;
 
-use super::{Channels, Image, ImageError, checked_len, malformed};
+use super::{Channels, Image, ImageError, check_sides, checked_len, malformed};
 
-/// Reads the first flat layer of an EXR file that has channels `R`, `G`, `B`, or `Y`, or one alone.
+/// Reads the channels `R`, `G`, `B`, or `Y`, or one that is alone in its part, of an EXR file: of those
+/// that the first part with any of them suggests, from the first part that holds them.
 ///
 /// Memory: the image, and the blocks that are being decompressed, whatever other channels there are;
 /// what a file announces and doesn't hold takes none.
@@ -147,6 +148,7 @@ pub fn stream_exr<W: Write + Seek, E: From<ImageError>>(
     };
     let described =
         names.iter().map(|&name| ChannelDescription::named(name, SampleType::F32)).collect();
+    check_sides(width, height).map_err(E::from)?;
     let size = Vec2(width as usize, height as usize);
     let header = Header::new(Text::from("image"), size, described).with_encoding(
         Compression::ZIP16,
@@ -255,7 +257,11 @@ impl<W: Write + Seek> ExrRows<'_, W> {
     }
 
     fn finish(&mut self) -> Result<(), ImageError> {
-        let rows = self.row + self.pending.len() / self.row_len();
+        let (rows, rest) =
+            (self.row + self.pending.len() / self.row_len(), self.pending.len() % self.row_len());
+        if rest > 0 {
+            return Err(malformed("EXR", "the last row is not whole"));
+        }
         if rows < self.height {
             let missing = self.height - rows;
             return Err(malformed("EXR", format!("{missing} rows were never written")));

@@ -39,7 +39,7 @@ impl Channels {
 #[non_exhaustive]
 pub enum ImageError {
     /// A side is 0, or there are more than [`Image::MAX_SAMPLES`] numbers.
-    #[error("an image of {width}×{height} pixels is not possible; {max} numbers at most", max = Image::MAX_SAMPLES)]
+    #[error("an image of {width}×{height} pixels is not possible; sides are 1 at least, and {max} numbers the most", max = Image::MAX_SAMPLES)]
     Size {
         /// The width asked for.
         width: u64,
@@ -113,7 +113,7 @@ impl Image {
         if values.len() != want {
             return Err(ImageError::Count { got: values.len(), want });
         }
-        check_finite(&values, width, channels, 0)?;
+        check_finite(&values, width, channels, (0, 0))?;
         Ok(Self { width, height, channels, values })
     }
 
@@ -166,19 +166,27 @@ impl Image {
     }
 }
 
-/// Refuses rows of an image, from row `first_row` on, that hold a value that is no finite number.
+/// Refuses sides that no file can have.
+fn check_sides(width: u32, height: u32) -> Result<(), ImageError> {
+    if width == 0 || height == 0 {
+        return Err(ImageError::Size { width: width.into(), height: height.into() });
+    }
+    Ok(())
+}
+
+/// Refuses rows of an image, from pixel `first` on, that hold a value that is no finite number.
 pub(crate) fn check_finite(
     values: &[f32],
     width: u32,
     channels: Channels,
-    first_row: u32,
+    first: (u32, u32),
 ) -> Result<(), ImageError> {
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(()),
         Some(bad) => {
             let pixel = bad / channels.count();
             let (x, y) = (pixel % width as usize, pixel / width as usize);
-            Err(ImageError::NotFinite { x: x as u32, y: first_row + y as u32 })
+            Err(ImageError::NotFinite { x: first.0 + x as u32, y: first.1 + y as u32 })
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Read, Seek, SeekFrom, Write};
 
-use super::{Channels, Image, ImageError, checked_len, malformed};
+use super::{Channels, Image, ImageError, check_sides, checked_len, malformed};
 
 /// The longest header line that is read before the file is given up.
 const MAX_LINE: u64 = 128;
@@ -89,13 +89,14 @@ impl<W: Write + Seek> PfmWriter<W> {
     /// Writes the header at the output's current position.
     ///
     /// # Errors
-    /// If the output fails.
+    /// If a side is 0 or the output fails.
     pub fn new(
         mut output: W,
         width: u32,
         height: u32,
         channels: Channels,
     ) -> Result<Self, ImageError> {
+        check_sides(width, height)?;
         let magic = match channels {
             Channels::Grey => "Pf",
             Channels::Rgb => "PF",

@@ -50,7 +50,7 @@ const MAX_INTERLACED: usize = 1 << 28;
 /// sRGB. A gamma of 1/2.2 is taken for sRGB, which it is written for; any other is a power law.
 ///
 /// # Errors
-/// If the file can't be read, is malformed or larger than [`Image::MAX_SAMPLES`].
+/// If the file can't be read, is malformed, larger than [`Image::MAX_SAMPLES`], or interlaced and larger than 256 MB.
 pub fn read_png(
     input: impl BufRead + Seek,
     encoding: Option<Encoding>,
@@ -72,7 +72,12 @@ pub fn read_png(
         Pixels { samples: color.samples(), used: channels.count(), light, values: Vec::new() };
     if interlaced {
         let size = reader.output_buffer_size().filter(|&size| size <= MAX_INTERLACED);
-        let size = size.ok_or_else(|| malformed("PNG", "the interlaced image is too large"))?;
+        let size = size.ok_or_else(|| {
+            malformed(
+                "PNG",
+                "the interlaced image is larger than 256 MB; save it without interlacing",
+            )
+        })?;
         let mut bytes = vec![0; size];
         reader.next_frame(&mut bytes).map_err(from_decoding)?;
         pixels.append(&bytes);

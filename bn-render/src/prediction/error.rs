@@ -57,10 +57,13 @@ impl<'a> Prediction<'a> {
     /// ([`Normalization::None`](crate::Normalization::None)): ∫ ε(ν) |R(ν)|² dν with the kernel's
     /// transfer function R, for a tiled pattern the sum over its modes.
     ///
-    /// Cost: (2K + 1)² products for each ordinate that lines have, 2K + 1 for each line.
+    /// Cost: (2K + 1)² products for each ordinate that lines have, 2K + 1 for each line; and 2K + 1
+    /// values of R for each abscissa and ordinate, of some 64 cosines a unit of the kernel's radius each
+    /// at low frequencies, which is most of it for few lines.
     ///
     /// # Panics
-    /// If a line's frequency and K/L together are above 10⁶ cycles per pixel.
+    /// If a line's frequency and K/L together are above 10⁶ cycles per pixel, or the kernel breaks its
+    /// contract.
     pub fn noise(&self, image: &ImageSpectrum, kernel: &dyn Kernel) -> f64 {
         let mut lines = image.lines().to_vec();
         lines.sort_by(|a, b| {

@@ -82,7 +82,7 @@ impl ImageSpectrum {
     /// The periodogram of an image that covers `frame` and need not repeat: what differs from a
     /// channel's mean is faded to nothing at the borders, by a Tukey window over 1/16 of each side,
     /// and scaled such that detail that fills the image evenly keeps its power. Nothing is faded along
-    /// sides shorter than 16 pixels.
+    /// sides shorter than 64 pixels, of which a ramp would have less than four.
     ///
     /// Otherwise as [`ImageSpectrum::of_image`], the mean's line too; a line leaves 4.7 % of its power to
     /// its neighbours along each axis, most of it to the nearest 16.
@@ -132,8 +132,9 @@ impl ImageSpectrum {
         self.lines.iter().map(|line| line.power).sum()
     }
 
-    /// The same without its mean: about what normalised convolution leaves of the error, as it
-    /// reconstructs constants exactly.
+    /// The same without its mean, which normalised convolution reconstructs exactly: an upper estimate
+    /// of what that leaves of the error, as it takes more of what changes slowly (up to 7 dB for blue
+    /// noise of 128 samples per pixel).
     #[must_use]
     pub fn without_mean(mut self) -> Self {
         self.lines.retain(|line| line.frequency != DVec2::ZERO);
@@ -152,7 +153,7 @@ fn about_mean(values: &mut [Complex<f64>]) -> Complex<f64> {
 
 /// A side's weights: rising over 1/16 of it at both ends as half a cosine, of mean square 1.
 fn tukey(side: usize) -> Vec<f64> {
-    let ramp = side / 16;
+    let ramp = if side < 64 { 0 } else { side / 16 };
     let rise = |i: usize| {
         let t = (i.min(side - 1 - i) as f64 + 0.5) / ramp as f64;
         if t < 1.0 { 0.5 - 0.5 * libm::cos(std::f64::consts::PI * t) } else { 1.0 }
@@ -324,8 +325,9 @@ mod tests {
         let flat = ImageSpectrum::of_faded_image(&image(&|_, _| 0.3), &frame).without_mean();
         assert!(flat.total_power() < 1e-20, "{}", flat.total_power());
         // Too small to be faded.
-        let small = Image::new(3, 1, Channels::Grey, vec![0.1, 0.7, 0.3]).expect("fits");
-        let frame = Frame::new(3, 1).expect("a size");
+        let values = (0..63).map(|i| (i * i % 17) as f32 / 17.0).collect();
+        let small = Image::new(63, 1, Channels::Grey, values).expect("fits");
+        let frame = Frame::new(63, 1).expect("a size");
         let powers = |spectrum: &ImageSpectrum| -> Vec<f64> {
             spectrum.lines().iter().map(|line| line.power).collect()
         };

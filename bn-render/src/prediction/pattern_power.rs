@@ -19,7 +19,7 @@ pub struct PatternPower {
 
 impl PatternPower {
     /// The mean periodogram of sets of equally many points, up to K = `max_frequency`; 4√n is
-    /// enough for most patterns to have become white.
+    /// enough for most patterns to have become white. P is good to 1e-6 of the largest.
     ///
     /// # Errors
     /// If the periodogram can't be planned for.

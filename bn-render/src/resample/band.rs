@@ -232,11 +232,15 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Pixels of a row without weight, leaving out blocks whose samples may have been skipped.
+    /// Pixels of a row without weight; where density divides, without blocks whose samples may have been
+    /// skipped.
     fn count_empty(&self, blocks: &BlockRow, weight: &[f64]) -> u64 {
         let column = |i: usize| (i64::from(self.window.x) + i as i64) / BLOCK;
         let empty = weight.iter().enumerate().filter(|&(_, &w)| w == 0.0);
-        empty.filter(|&(i, _)| blocks.constant(column(i)).is_none()).count() as u64
+        let may_be_skipped = |i: usize| {
+            self.normalization == Normalization::Density && blocks.constant(column(i)).is_some()
+        };
+        empty.filter(|&(i, _)| !may_be_skipped(i)).count() as u64
     }
 }
 

@@ -52,8 +52,9 @@ pub struct RenderStats {
     pub evaluated: u64,
     /// Evaluations at block centres, beside the samples: at most one for each 32 × 32 pixels.
     pub references: u64,
-    /// Pixels with Σ r = 0 under [`Normalization::Density`], mostly pixels that no sample reaches:
-    /// they take the scene's value at their block's centre.
+    /// Pixels with Σ r = 0, mostly pixels that no sample reaches: under [`Normalization::Density`] they
+    /// take the scene's value at their block's centre, and blocks that are known to be constant, which
+    /// are exact without a sample, are left out; under [`Normalization::None`] they are 0.
     pub empty_pixels: u64,
 }
 
@@ -145,8 +146,8 @@ impl<'a> Renderer<'a> {
         let watch = Watch::new(observer, window.height.into());
         let mut stats = RenderStats { samples: self.samples(), ..Default::default() };
         let bands = layout.bands();
-        // Of two groups: one is in work while the other's rows are handed over.
-        let rows = 2 * layout.row_bytes();
+        // Rows are kept until the next bands are in work.
+        let rows = layout.row_bytes();
         let at_once =
             (BAND_MEMORY / (layout.band_bytes() + rows)).clamp(1, 4 * rayon::current_num_threads());
         let mut held = Held { first: bands.start, planes: VecDeque::new() };
@@ -193,9 +194,6 @@ impl<'a> Renderer<'a> {
         }
         for (row, values) in finished {
             hand_over(layout, row, &values, &mut sink)?;
-        }
-        if layout.normalization == Normalization::None {
-            stats.empty_pixels = 0;
         }
         Ok(stats)
     }
@@ -251,7 +249,7 @@ fn hand_over(
 ) -> Result<(), RenderError> {
     let first_row = layout.pixel_rows(row).start as u32;
     let (window, channels) = (layout.window, layout.scene.channels());
-    check_finite(values, window.width, channels, first_row - window.y)?;
+    check_finite(values, window.width, channels, (window.x, first_row))?;
     sink(Band { first_row, values })?;
     Ok(())
 }

@@ -176,14 +176,24 @@ fn check(options: &SceneOptions) -> Result<(), SceneError> {
     };
     let modest = |x: f64| x.abs() <= MOST;
     ok("frequency", o.frequency, modest(o.frequency), "at most 1e6 in size")?;
-    ok("cut-off radius", o.cut_radius, o.cut_radius > 0.0 && modest(o.cut_radius), "positive")?;
+    ok(
+        "cut-off radius",
+        o.cut_radius,
+        o.cut_radius > 0.0 && modest(o.cut_radius),
+        "above 0 and at most 1e6",
+    )?;
     ok("angle", o.angle_degrees, modest(o.angle_degrees), "at most 1e6 in size")?;
     ok("phase", o.phase_turns, modest(o.phase_turns), "at most 1e6 in size")?;
     ok("level", o.level, modest(o.level), "at most 1e6 in size")?;
     ok("amplitude", o.amplitude, modest(o.amplitude), "at most 1e6 in size")?;
     ok("contrast", o.contrast, modest(o.contrast), "at most 1e6 in size")?;
     ok("horizon", o.horizon, (0.0..1.0).contains(&o.horizon), "from 0 to below 1")?;
-    ok("number of squares", o.squares, o.squares > 0.0 && modest(o.squares), "positive")
+    ok(
+        "number of squares",
+        o.squares,
+        o.squares > 0.0 && modest(o.squares),
+        "above 0 and at most 1e6",
+    )
 }
 
 #[cfg(test)]

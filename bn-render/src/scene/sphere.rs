@@ -11,8 +11,9 @@ use crate::{Channels, Frame};
 /// 5.10, which is not ours to ship.
 ///
 /// The sphere's stripes have 160 to 190 cycles to the image's width over most of it and ever more
-/// towards its silhouette, with a third harmonic, the floor's some 100 to 400: in an image of 160 pixels most of the variance is finer than pixels, so that
-/// every pattern has noise to show, and the few edges leave lattices an order of magnitude less.
+/// towards its silhouette, with a third harmonic, the floor's mostly 100 to 300: in an image of 160
+/// pixels most of the variance is finer than pixels, so that every pattern has noise to show, and the
+/// few edges leave lattices an order of magnitude less.
 ///
 /// Procedural and deterministic; one ray and at most one shadow ray for each sample, no
 /// reflections. Values are ½ + contrast·(shade − ½) with shades in [0, 1]. Cost: some 100 ns a

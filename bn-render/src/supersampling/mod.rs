@@ -49,7 +49,7 @@ pub enum SupersamplingError {
         index: usize,
     },
     /// The weights cancel, so that they can't be scaled to the sum 1.
-    #[error("the weights sum to {sum}; a pattern needs a positive sum")]
+    #[error("the weights sum to {sum:?}; a pattern needs a finite sum above 1e-9 of their sizes")]
     Weights {
         /// Their sum.
         sum: f64,

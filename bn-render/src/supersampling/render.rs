@@ -1,6 +1,6 @@
 //! Images through supersampling patterns.
 
-use bn_core::Observer;
+use bn_core::{DVec2, Observer};
 use rayon::prelude::*;
 
 use super::{Class, Supersampling};
@@ -9,10 +9,13 @@ use crate::{Frame, Image, RenderError, Scene};
 
 impl Supersampling {
     /// The frame's window of the scene through this pattern, and the number of samples taken:
-    /// each sample is evaluated once, however many pixels share it.
+    /// each sample is evaluated once, however many pixels share it. Where taps lie so far apart that
+    /// the rectangle around their samples holds more of them than all pixels have taps, each tap takes
+    /// its own.
     ///
     /// Sums run over classes of shared samples and then over taps, in f64, the same on any number
-    /// of threads. Memory: two f64 a pixel and channel beside the image.
+    /// of threads and for any window. Memory: two f64 a pixel and channel beside the image, and as much
+    /// again for margins as wide as the taps are apart.
     ///
     /// The observer is asked once for each class, and told how many of them are done.
     ///
@@ -36,18 +39,32 @@ impl Supersampling {
             if !watch.reached(done) {
                 return Err(RenderError::Cancelled);
             }
-            let lattice = Lattice::around(class, frame);
-            let samples = lattice.evaluate(scene, class);
-            taken += (lattice.width * lattice.height) as u64;
-            let rows = sums.par_chunks_exact_mut(width * channels).enumerate();
-            rows.for_each(|(j, row)| lattice.add_row(class, &samples, channels, j, row));
+            for shifts in parts(class, frame) {
+                let lattice = Lattice::around(shifts, frame);
+                let samples = lattice.evaluate(scene, class.residue);
+                taken += (lattice.width * lattice.height) as u64;
+                let rows = sums.par_chunks_exact_mut(width * channels).enumerate();
+                rows.for_each(|(j, row)| lattice.add_row(shifts, &samples, channels, j, row));
+            }
         }
         let values = sums.into_iter().map(|sum| sum as f32).collect();
         Ok((Image::new(window.width, window.height, scene.channels(), values)?, taken))
     }
 }
 
-/// The samples of one class that a window needs: one for each pixel and a margin.
+/// A tap's distance in whole pixels from its class's residue, and its weight.
+type Shift = (i64, i64, f64);
+
+/// The shifts of a class, together or each alone, whatever takes fewer samples.
+fn parts<'a>(class: &'a Class, frame: &Frame) -> std::slice::Chunks<'a, Shift> {
+    let window = frame.window();
+    let (together, all) = (Lattice::around(&class.shifts, frame), class.shifts.len());
+    let alone = all as f64 * f64::from(window.width) * f64::from(window.height);
+    let shared = together.width as f64 * together.height as f64;
+    class.shifts.chunks(if shared <= alone { all.max(1) } else { 1 })
+}
+
+/// The samples of some shifts of one class that a window needs: one for each pixel and a margin.
 struct Lattice {
     /// The pixel that the first sample belongs to, and how far the window's first pixel is from it.
     first: (i64, i64),
@@ -57,11 +74,11 @@ struct Lattice {
 }
 
 impl Lattice {
-    fn around(class: &Class, frame: &Frame) -> Self {
+    fn around(shifts: &[Shift], frame: &Frame) -> Self {
         let window = frame.window();
-        let span = |shift: fn(&(i64, i64, f64)) -> i64| {
-            let shifts = || class.shifts.iter().map(shift);
-            (shifts().min().unwrap_or(0), shifts().max().unwrap_or(0))
+        let span = |along: fn(&Shift) -> i64| {
+            let places = || shifts.iter().map(along);
+            (places().min().unwrap_or(0), places().max().unwrap_or(0))
         };
         let (x, y) = (span(|s| s.0), span(|s| s.1));
         Self {
@@ -73,16 +90,16 @@ impl Lattice {
     }
 
     /// The samples' values: for each row first all of channel 0, then all of channel 1, …
-    fn evaluate(&self, scene: &dyn Scene, class: &Class) -> Vec<f64> {
+    fn evaluate(&self, scene: &dyn Scene, residue: DVec2) -> Vec<f64> {
         let channels = scene.channels().count();
-        let start = (self.first.0 as f64 + 0.5) + class.residue.x;
+        let start = (self.first.0 as f64 + 0.5) + residue.x;
         let u: Vec<f64> = (0..self.width).map(|i| start + i as f64).collect();
         let mut samples = vec![0.0; self.width * self.height * channels];
         let rows = samples.par_chunks_exact_mut(self.width * channels).enumerate();
         rows.for_each_init(
             || vec![0.0; self.width],
             |v, (j, row)| {
-                v.fill(((self.first.1 + j as i64) as f64 + 0.5) + class.residue.y);
+                v.fill(((self.first.1 + j as i64) as f64 + 0.5) + residue.y);
                 scene.values(&u, v, row);
             },
         );
@@ -90,9 +107,16 @@ impl Lattice {
     }
 
     /// Adds what the class gives to row `j` of the window.
-    fn add_row(&self, class: &Class, samples: &[f64], channels: usize, j: usize, row: &mut [f64]) {
+    fn add_row(
+        &self,
+        shifts: &[Shift],
+        samples: &[f64],
+        channels: usize,
+        j: usize,
+        row: &mut [f64],
+    ) {
         let width = row.len() / channels;
-        for &(dx, dy, weight) in &class.shifts {
+        for &(dx, dy, weight) in shifts {
             let (x, y) = ((self.margin.0 + dx) as usize, (self.margin.1 + dy) as usize + j);
             for c in 0..channels {
                 let line = &samples[(y * channels + c) * self.width + x..][..width];

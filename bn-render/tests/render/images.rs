@@ -352,3 +352,13 @@ fn parts_of_exr_files_are_not_mixed_up() {
     assert_eq!((read.width(), read.height()), (5, 3));
     assert!(read.values().iter().all(|&value| value == 0.25));
 }
+
+#[test]
+fn files_without_pixels_are_not_begun() {
+    for (width, height) in [(0, 5), (5, 0)] {
+        let pfm = PfmWriter::new(Cursor::new(Vec::new()), width, height, Channels::Grey);
+        assert!(matches!(pfm, Err(ImageError::Size { .. })));
+        let png = PngWriter::new(Vec::new(), width, height, Channels::Grey, &PngOptions::default());
+        assert!(png.is_err());
+    }
+}

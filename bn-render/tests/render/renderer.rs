@@ -293,7 +293,13 @@ fn pixels_without_samples_take_their_blocks_value() {
     assert_eq!((stats.samples, stats.empty_pixels), (1, 63));
     assert!(values.iter().all(|&v| v == 1.0), "the block's centre is the plate's");
     let (plain, stats) = render(&scene, &pattern, &table("box"), Normalization::None, &frame);
-    assert_eq!((plain[4 * 8 + 4], plain[0], stats.empty_pixels), (64.0, 0.0, 0));
+    assert_eq!((plain[4 * 8 + 4], plain[0], stats.empty_pixels), (64.0, 0.0, 63));
+    // A constant needs no sample to be exact where weights divide.
+    for (normalization, empty) in [(Normalization::Density, 0), (Normalization::None, 63)] {
+        let (_, stats) =
+            render(&Constant::grey(0.3), &pattern, &table("box"), normalization, &frame);
+        assert_eq!((stats.samples, stats.empty_pixels), (1, empty), "{normalization:?}");
+    }
 }
 
 #[test]

@@ -177,3 +177,31 @@ fn files_are_read_and_checked() {
     }
     assert!(matches!(read("0 0 1\n0.5 0 -1"), Err(SupersamplingError::Weights { .. })));
 }
+
+/// A tap at the other end of what is allowed doesn't draw in all samples between: two a pixel, and the
+/// same pixels for any window.
+#[test]
+fn far_taps_take_their_own_samples() {
+    let tap = |x: f64, y: f64| Tap { offset: DVec2::new(x, y), weight: 1.0 };
+    let pattern = Supersampling::new("far", vec![tap(0.0, 0.0), tap(64.0, -64.0)]).expect("two");
+    let frame = Frame::new(40, 30).expect("a size");
+    let scene = waves(&frame);
+    let (whole, taken) = pattern.render(&*scene, &frame, &Unobserved).expect("small");
+    assert_eq!(taken, 2 * 40 * 30);
+    for (x, y) in [(0_u32, 0_u32), (17, 21), (39, 29)] {
+        let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let taps = pattern.taps().iter().map(|tap| scene.value(centre + tap.offset)[0]);
+        let want = 0.5 * taps.sum::<f64>();
+        let got = f64::from(whole.values()[(y * 40 + x) as usize]);
+        assert!((got - want).abs() < 1e-7, "({x}, {y}): {got} {want}");
+        let window = Window { x, y, width: 1, height: 1 };
+        let one = frame.cropped(window).expect("within");
+        let (pixel, taken) = pattern.render(&*scene, &one, &Unobserved).expect("small");
+        assert_eq!(taken, 2);
+        assert_eq!(pixel.values()[0], whole.values()[(y * 40 + x) as usize]);
+    }
+}
+
+fn waves(frame: &Frame) -> Box<dyn Scene> {
+    bn_render::scene("zone-plate", frame, &bn_render::SceneOptions::default()).expect("a scene")
+}

@@ -170,8 +170,8 @@ fn interpolated_spectrum(image: &Image, frame: &Frame) -> (ImageSpectrum, ImageS
         if x == 0.0 { 1.0 } else { (libm::sin(x) / x).powi(4) }
     };
     // From the middle of a grid of groups, which reaches to 1½ rates.
-    let (width, reach) =
-        (f64::from(TOGETHER) / f64::from(SMALL), 3 * LARGE as i32 / 2 / TOGETHER + 1);
+    let width = f64::from(TOGETHER) / f64::from(frame.width());
+    let reach = 3 * image.width() as i32 / 2 / TOGETHER + 1;
     let side = (2 * reach + 1) as usize;
     let group = |nu: f64| ((nu / width).round() as i32 + reach) as usize;
     let mut powers = vec![0.0; side * side];
@@ -225,7 +225,7 @@ mod tests {
         let square = |i: u32| picture.value(DVec2::new(at(i % steps), at(i / steps)))[0].powi(2);
         let want = (0..steps * steps).map(square).sum::<f64>() / f64::from(steps).powi(2);
         let got = mean.total_power() + details.total_power();
-        // The border's half pixels are constant instead: 1 % of the area, of 0.2 of the power.
+        // The border's half pixels are constant across instead: 2 % of the area.
         assert!((got - want).abs() < 1e-3, "{got} {want}");
         // The interpolation took something: pixels alone have 0.16 + 0.045 + 0.02.
         assert!(got < 0.22, "{got}");

@@ -1,5 +1,6 @@
 //! `--adaptive`: as many samples as an error takes, block by block.
 
+use anyhow::anyhow;
 use bn_core::{DVec2, Observer, PointSet, Seed};
 use bn_render::{
     AdaptiveRenderer, AdaptiveStats, KernelTable, Normalization, ProgressivePattern, RenderStats,
@@ -23,12 +24,13 @@ pub(super) struct AdaptiveArgs {
     /// light: 0.01 is 40 dB. The error reached is told
     #[arg(long, value_name = "ERROR", allow_negative_numbers = true)]
     adaptive: Option<f64>,
-    /// The most samples per pixel that a block may get; the last step of four that doesn't exceed it
-    /// is where refinement ends
+    /// The most samples per pixel that a block may get. Each step about quadruples them, as the layer
+    /// before stays to judge by: from 4 to 16.8, 68, 272.8 and 1092; the last that doesn't exceed it
+    /// ends refinement
     #[arg(
         long,
         value_name = "SPP",
-        default_value = "1024",
+        default_value = "1100",
         requires = "adaptive",
         allow_negative_numbers = true
     )]
@@ -67,7 +69,7 @@ impl AdaptiveArgs {
         // Its rates are refused whatever the set.
         let point = PointSet::new(vec![DVec2::ZERO]).map_err(Failure::failed)?;
         ProgressivePattern::new(&point, pilot, self.max_spp, Seed::new(0))
-            .map_err(Failure::usage)?;
+            .map_err(|error| Failure::usage(anyhow!(error).context("--max-spp")))?;
         Ok(())
     }
 

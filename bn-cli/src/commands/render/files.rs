@@ -61,7 +61,9 @@ impl FileArgs {
     }
 
     /// The files to write, checked as far as that goes before any work.
-    pub(super) fn targets(&self) -> Outcome<Targets<'_>> {
+    ///
+    /// `inputs` must stay as they are.
+    pub(super) fn targets(&self, inputs: &[&Path]) -> Outcome<Targets<'_>> {
         let image = self.output.as_deref().map(|path| self.image_target(path)).transpose()?;
         let error = self.error.as_deref().map(|path| self.error_target(path)).transpose()?;
         if let (Some(image), Some(error)) = (&image, &error)
@@ -72,16 +74,33 @@ impl FileArgs {
                 error.path.display()
             )));
         }
+        for (option, file) in [("-o", &self.output), ("--error", &self.error)] {
+            if let Some(file) = file.as_deref()
+                && inputs.iter().any(|input| output::replaces(file, input))
+            {
+                return Err(Failure::misuse(format!(
+                    "{option} {}: the image would replace what it is made from or held against",
+                    file.display()
+                )));
+            }
+        }
         Ok(Targets { image, error, error_gain: self.error_gain.unwrap_or(1.0) })
     }
 
     fn image_target<'a>(&self, path: &'a Path) -> Outcome<Target<'a>> {
         let format = match self.format {
+            Some(format) if ImageFormat::from_path(path).is_ok_and(|told| told != format) => {
+                return Err(Failure::misuse(format!(
+                    "-o {}: the name tells another format than --format",
+                    path.display()
+                )));
+            }
             Some(format) => format,
             None if path == Path::new("-") => {
                 return Err(Failure::misuse("an image on standard output needs --format"));
             }
-            None => ImageFormat::from_path(path)?,
+            None => ImageFormat::from_path(path)
+                .map_err(|failure| failure.context("-o needs such a name, or --format"))?,
         };
         let of_png = [self.depth.map(|_| "depth"), self.encoding.map(|_| "encoding")];
         only_png(format, path, of_png)?;

@@ -7,6 +7,7 @@ mod reference;
 mod sampling;
 mod scene;
 
+use std::path::Path;
 use std::time::Instant;
 
 use bn_render::{
@@ -33,12 +34,18 @@ pub(super) struct Render {
     #[command(flatten)]
     files: FileArgs,
     /// What the image is held against: an image file, `exact` for the scene convolved with the kernel,
-    /// or a number for a hexagonal lattice of so many samples per pixel. Images are held in memory
+    /// or a number for a hexagonal lattice of so many samples per pixel. A file has the size of the image,
+    /// or of its window. Images are held in memory
     #[arg(long, value_name = "FILE|exact|SPP", help_heading = "Output",
           value_parser = |text: &str| Ok::<_, String>(Reference::from(text)))]
     reference: Option<Reference>,
-    /// A JSON account on standard output: width, height, spp, samples, `samples_skipped`, mse, psnr,
-    /// seconds and what was asked for; with --reconstruct act or pocs also iterations and residual
+    /// A JSON account on standard output: what was asked for; width, height, spp, `samples` (whose
+    /// kernel reaches a wanted pixel), of these `samples_evaluated` and `samples_skipped`,
+    /// `references_evaluated` (evaluations at blocks' centres, beside the samples), `empty_pixels`
+    /// (guessed, or 0, for want of samples), mse, psnr, `seconds` of the rendering alone and
+    /// `pattern_seconds`; with --reconstruct act or pocs also iterations and residual; with --adaptive
+    /// the samples of all tiles of 128x128 pixels that meet the window (margins too), `spp_mean` (those
+    /// over the tiles' pixels), `pilot_samples` (of every block's first layer), blocks and errors
     #[arg(long, help_heading = "Output")]
     json: bool,
 }
@@ -47,6 +54,10 @@ pub(super) fn command() -> Command {
     let scenes: Vec<_> =
         SCENES.iter().map(|entry| format!("  {:<19} {}", entry.name, entry.summary)).collect();
     Render::augment_args(Command::new("render"))
+        .override_usage(
+            "bn render [OPTIONS] --pattern <METHOD|FILE> <SCENE>\n       \
+             bn render [OPTIONS] --supersampling <SET|FILE> <SCENE>",
+        )
         .about("Render a scene through a sampling pattern and a kernel")
         .long_about(
             "Render a scene through a sampling pattern and a reconstruction kernel. Pixel (i, j) has \
@@ -95,8 +106,12 @@ pub(super) fn run(args: &Render, global: &Global) -> Outcome {
         reconstruction::remark(fit, global);
     }
     if done.stats.empty_pixels > 0 {
+        let become_ = match normalization {
+            Normalization::Density => "take the scene's value nearby",
+            Normalization::None => "are 0",
+        };
         global.remark(format!(
-            "{} pixels have no sample in reach; they take the scene's value nearby",
+            "{} pixels have no sample in reach; they {become_}",
             done.stats.empty_pixels
         ));
     }
@@ -165,7 +180,13 @@ impl Render {
         }
         let takes_kernel = self.reference.as_ref().is_some_and(Reference::takes_kernel);
         self.sampling.check_kernel(takes_kernel)?;
-        self.files.targets()
+        let inputs: Vec<_> = self
+            .sampling
+            .files()
+            .chain([Path::new(&self.scene.scene)])
+            .chain(self.reference.as_ref().and_then(Reference::file))
+            .collect();
+        self.files.targets(&inputs)
     }
 
     /// Renders and writes the image; returns it if it is to be compared.

@@ -27,11 +27,11 @@ pub(super) struct ReconstructionArgs {
     /// for convolution, voronoi for act and pocs)
     #[arg(long, value_name = "HOW", conflicts_with = "supersampling")]
     weights: Option<Weights>,
-    /// act, pocs: the most iterations (default: 30)
+    /// act, pocs: the most iterations, up to 1000000 (default: 30)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     iterations: Option<u32>,
-    /// act, pocs: the residual of the normal equations that suffices, over that at the start
-    /// (default: 1e-6)
+    /// act, pocs: the residual of the normal equations that suffices, over that at the start; from
+    /// 0 to below 1 (default: 1e-6)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// act, pocs: the frequencies of the fit along each axis, in cycles per pixel (default:
@@ -73,8 +73,10 @@ impl ReconstructionArgs {
         };
         let usual = Stopping::default();
         let tolerance = self.tolerance.unwrap_or(usual.tolerance);
-        if !(tolerance >= 0.0 && tolerance.is_finite()) {
-            return Err(Failure::misuse(format!("--tolerance {tolerance} is no residual")));
+        if !(0.0..1.0).contains(&tolerance) {
+            return Err(Failure::misuse(format!(
+                "--tolerance {tolerance:?}: residuals go from 1 at the start down to 0; 1e-6 is usual"
+            )));
         }
         let stopping = Stopping {
             iterations: self.iterations.map_or(usual.iterations, |count| count as usize),

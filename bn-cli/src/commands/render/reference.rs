@@ -1,6 +1,6 @@
 //! What an image is held against.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use bn_core::{Observer, Seed, Unobserved};
@@ -12,7 +12,8 @@ use super::super::Global;
 use super::sampling::{Tiled, from_render_error};
 use super::scene::Subject;
 use super::{collect, normalization_name};
-use crate::{Failure, Outcome, image_file};
+use crate::image_file::{self, ImageFormat};
+use crate::{Failure, Outcome};
 
 /// Where the reference comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +50,14 @@ pub(super) enum Prepared {
 }
 
 impl Reference {
+    /// The file that is read.
+    pub(super) fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File(path) => Some(path),
+            Self::Exact | Self::Hexagonal(_) => None,
+        }
+    }
+
     /// Whether it is made through the kernel.
     pub(super) fn takes_kernel(&self) -> bool {
         !matches!(self, Self::File(_))
@@ -60,14 +69,23 @@ impl Reference {
         Image::check_size(window.width, window.height, channels).map_err(Failure::usage)?;
         match self {
             Self::File(path) => {
-                let image = image_file::read(path, None)?;
+                ImageFormat::from_path(path).map_err(|_| {
+                    Failure::misuse(format!(
+                        "--reference {}: a reference is `exact`, a number of samples per pixel or an image \
+                         file (.png, .pfm, .exr)",
+                        path.display()
+                    ))
+                })?;
+                let image = image_file::read(path, None)
+                    .map_err(|failure| failure.context("--reference"))?;
                 let (got, want) = (
                     (image.width(), image.height(), image.channels().count()),
                     (window.width, window.height, channels.count()),
                 );
                 if got != want {
                     return Err(Failure::misuse(format!(
-                        "--reference {}: its {}×{} pixels have {} channel(s); the rendering has {}×{} of {}",
+                        "--reference {}: its {}×{} pixels have {} channel(s); the rendering (what --crop leaves of \
+                         it) has {}×{} of {}",
                         path.display(),
                         got.0,
                         got.1,

@@ -8,8 +8,8 @@ use std::path::Path;
 use anyhow::anyhow;
 use bn_core::{DVec2, Observer, PointSet, Seed};
 use bn_render::{
-    AdaptiveStats, BandLimitedOptions, BandLimitedStats, Frame, KERNELS, Kernel, KernelTable,
-    Normalization, Pattern, RenderError, RenderStats, Renderer, SUPERSAMPLING, Scene,
+    AdaptiveStats, BandLimitedOptions, BandLimitedStats, Frame, ImageError, KERNELS, Kernel,
+    KernelTable, Normalization, Pattern, RenderError, RenderStats, Renderer, SUPERSAMPLING, Scene,
     Supersampling, TileVariation,
 };
 use bn_samplers::Method;
@@ -133,6 +133,11 @@ impl SamplingArgs {
     /// How tiles vary, as typed.
     pub(super) fn variation_name(&self) -> Value {
         word(&self.vary_tiles)
+    }
+
+    /// Names of files that may be read.
+    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
+        [&self.pattern, &self.supersampling].into_iter().flatten().map(Path::new)
     }
 
     /// The seed, where something hangs on it; `pattern` is the pattern's account.
@@ -296,7 +301,9 @@ fn supersampling(name: &str) -> Outcome<Supersampling> {
     let mut text = String::new();
     let read = File::open(name).and_then(|file| file.take(LONGEST + 1).read_to_string(&mut text));
     let read = match read {
-        Ok(length) if length as u64 > LONGEST => Err("it is too long for a pattern".to_owned()),
+        Ok(length) if length as u64 > LONGEST => {
+            Err("more than 16 MB are too long for a pattern".to_owned())
+        }
         read => read.map_err(|error| error.to_string()),
     };
     read.map_err(|error| {
@@ -388,6 +395,10 @@ impl Tiled {
 pub(super) fn from_render_error(error: RenderError) -> Failure {
     match error {
         RenderError::Output(error) => Failure::from(error),
+        RenderError::Image(error @ ImageError::NotFinite { .. }) => Failure::usage(
+            anyhow!(error)
+                .context("the scene is brighter than 32-bit floats can tell once filtered"),
+        ),
         RenderError::Image(error) => Failure::usage(error),
         other => Failure::failed(other),
     }

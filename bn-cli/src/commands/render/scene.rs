@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use bn_render::{Encoding, Frame, Interpolation, Picture, SCENES, Scene, SceneOptions, Window};
+use anyhow::anyhow;
+use bn_render::{
+    Encoding, Frame, FrameError, Interpolation, Picture, SCENES, Scene, SceneOptions, Window,
+};
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value, json};
 
@@ -17,7 +20,8 @@ pub(super) struct SceneArgs {
     /// Alpha is ignored
     #[arg(value_name = "SCENE")]
     pub(super) scene: String,
-    /// Size of the image in pixels (default: 512x512, or that of the image file)
+    /// Size of the image in pixels, sides from 1 to 1048576 (default: 512x512, or that of the image
+    /// file)
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Render only this window of it, bit for bit what the whole image has there
@@ -30,10 +34,13 @@ pub(super) struct SceneArgs {
     #[arg(long, value_name = "CURVE")]
     scene_encoding: Option<Curve>,
     /// zone-plate: local frequency in cycles per pixel at half the image's width;
-    /// zone-plate-limited: the highest frequency; plane-wave: its frequency (default: 1)
+    /// zone-plate-limited: the highest frequency; plane-wave: its frequency f, in level + amplitude
+    /// cos(2 pi (f s + phase)), s the distance from the image's upper left corner along the angle
+    /// (default: 1)
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     frequency: Option<f64>,
-    /// zone-plate-limited: where the highest frequency is reached, over half the width (default: 1)
+    /// zone-plate-limited: where the highest frequency is reached, over half the width; above 0
+    /// (default: 1)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     cut_radius: Option<f64>,
     /// plane-wave: angle of its frequency in degrees, clockwise (default: 0)
@@ -51,10 +58,11 @@ pub(super) struct SceneArgs {
     /// sphere: contrast about middle grey (default: 1)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     contrast: Option<f64>,
-    /// checkerboard: the horizon's distance from the top over the height (default: 0.3)
+    /// checkerboard: the horizon's distance from the top over the height, from 0 to below 1 (default:
+    /// 0.3)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     horizon: Option<f64>,
-    /// checkerboard: squares along the lower edge (default: 12)
+    /// checkerboard: squares along the lower edge, above 0 (default: 12)
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     squares: Option<f64>,
 }
@@ -140,9 +148,12 @@ impl SceneArgs {
 
     fn frame(&self, default: (u32, u32)) -> Outcome<Frame> {
         let (width, height) = self.size.unwrap_or(default);
-        let frame = Frame::new(width, height).map_err(Failure::usage)?;
+        let refused = |option: &'static str| {
+            move |error: FrameError| Failure::usage(anyhow!(error).context(option))
+        };
+        let frame = Frame::new(width, height).map_err(refused("--size"))?;
         match self.crop {
-            Some(window) => frame.cropped(window).map_err(Failure::usage),
+            Some(window) => frame.cropped(window).map_err(refused("--crop")),
             None => Ok(frame),
         }
     }
@@ -198,8 +209,8 @@ fn numbers<const N: usize>(text: &str, separator: char) -> Option<[u32; N]> {
 }
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let [width, height] =
-        numbers(&text.to_ascii_lowercase(), 'x').ok_or("a size looks like 640x480")?;
+    let [width, height] = numbers(&text.to_ascii_lowercase(), 'x')
+        .ok_or("a size looks like 640x480, up to 1048576")?;
     Ok((width, height))
 }
 

@@ -69,8 +69,9 @@ pub struct AdaptiveStats {
     /// Blocks whose window is estimated above the wanted error, or holds pixels of which nothing can be
     /// said, with all samples they may have.
     pub blocks_unresolved: u64,
-    /// Pixels with Σ r = 0 under [`Normalization::Density`]: they take the scene's value at their
+    /// Pixels with Σ r = 0: under [`Normalization::Density`] they take the scene's value at their
     /// tile's centre, and are not part of the estimates; their windows are refined as far as may be.
+    /// Under [`Normalization::None`] they are 0.
     pub empty_pixels: u64,
     /// Pixels of all tiles that meet the window.
     pub pixels: u64,
@@ -208,7 +209,7 @@ impl<'a> AdaptiveRenderer<'a> {
             }
         }
         let first_row = row * TILE + wanted.start as u32;
-        check_finite(&values, window.width, channels, first_row - window.y)?;
+        check_finite(&values, window.width, channels, (window.x, first_row))?;
         sink(AdaptiveBand { first_row, values: &values, samples_per_pixel: &rates })?;
         Ok(())
     }

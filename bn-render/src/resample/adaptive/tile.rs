@@ -90,11 +90,9 @@ enum Known {
     Error(f64),
     /// No sample of the older layer reaches it.
     Nothing,
-    /// The samples of the last layer cancel each other in the kernel: the value is a quotient of small
-    /// numbers.
+    /// The samples of the last layer cancel each other in the kernel, the value being a quotient of small
+    /// numbers, or none reaches it.
     Thin,
-    /// No sample of the last layer reaches it.
-    Empty,
 }
 
 impl Task<'_> {
@@ -221,7 +219,6 @@ impl Task<'_> {
         for pixel in 0..area {
             let weights = (scratch.total[pixel], scratch.gap[pixel]);
             let mut squares = Squares { estimated: 1, ..Squares::default() };
-            let mut is_empty = false;
             for (c, &reference) in reference[..channels].iter().enumerate() {
                 let at = (1 + c) * area + pixel;
                 let values = (scratch.total[at], scratch.gap[at]);
@@ -231,13 +228,9 @@ impl Task<'_> {
                     Known::Error(error) => squares.sum += error * error / channels as f64,
                     Known::Nothing => squares = Squares::default(),
                     Known::Thin => squares = Squares { unsure: 1, ..Squares::default() },
-                    Known::Empty => {
-                        squares = Squares { unsure: 1, ..Squares::default() };
-                        is_empty = true;
-                    }
                 }
             }
-            finished.account.empty += u64::from(is_empty);
+            finished.account.empty += u64::from(weights.0 == 0.0);
             let (row, column) = (pixel / width, pixel % width);
             let patch = axes[1].patch_at(row) * axes[0].patches + axes[0].patch_at(column);
             scratch.squares[patch].add(squares);
@@ -258,7 +251,7 @@ impl Task<'_> {
         let scale = 1.0 / (1.0 + ProgressivePattern::GROWTH).sqrt();
         let expected = self.source.table.integral().powi(2);
         match self.normalization {
-            Normalization::Density if weight.0 == 0.0 => (reference, Known::Empty),
+            Normalization::Density if weight.0 == 0.0 => (reference, Known::Thin),
             Normalization::Density => {
                 let color = reference + value.0 / weight.0;
                 if weight.0 + weight.1 == 0.0 {
