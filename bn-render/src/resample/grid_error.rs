@@ -31,9 +31,11 @@ const DIRECTIONS: usize = 128;
 ///
 /// The maximum over a grid of frequencies and places and, of their multipliers, over those farthest in
 /// 128 directions: at most 1 % below the true one from 1 sample per pixel on; below, where weights all
-/// but cancel at some places and errors shoot up between those that are tried, by more. Cost: 25 places for each interval between bends of
-/// the kernel, each with 48 frequencies, or 32 a cycle and unit of radius if those are more, and two
-/// cosines for each sample that the kernel reaches: milliseconds up to 16 samples per pixel.
+/// but cancel at some places and errors shoot up between those that are tried, by more.
+///
+/// Cost: 25 places for each interval between bends of the kernel, each with 48 frequencies, or 32 a
+/// cycle and unit of radius if those are more, and two cosines for each sample that the kernel reaches:
+/// milliseconds up to 16 samples per pixel.
 ///
 /// ```
 /// use bn_render::{Normalization, grid_error, kernel};

@@ -6,6 +6,7 @@ mod reconstruction;
 mod reference;
 mod sampling;
 mod scene;
+mod supersampling;
 
 use std::path::Path;
 use std::time::Instant;

@@ -1,16 +1,14 @@
 //! How the scene is sampled and reconstructed: a tiled pattern and a kernel, or a fixed few samples
 //! for each pixel.
 
-use std::fs::File;
-use std::io::Read as _;
 use std::path::Path;
 
 use anyhow::anyhow;
 use bn_core::{DVec2, Observer, PointSet, Seed};
 use bn_render::{
     AdaptiveStats, BandLimitedOptions, BandLimitedStats, Frame, ImageError, KERNELS, Kernel,
-    KernelTable, Normalization, Pattern, RenderError, RenderStats, Renderer, SUPERSAMPLING, Scene,
-    Supersampling, TileVariation,
+    KernelTable, Normalization, Pattern, RenderError, RenderStats, Renderer, Scene, Supersampling,
+    TileVariation,
 };
 use bn_samplers::Method;
 use clap::builder::PossibleValuesParser;
@@ -21,6 +19,7 @@ use super::super::method_values::{given_values, only_set};
 use super::adaptive::{self, Adaptive, AdaptiveArgs};
 use super::reconstruction::{self, BandLimited, ReconstructionArgs};
 use super::scene::{Subject, word};
+use super::supersampling;
 use crate::image_file::Rows;
 use crate::progress_bar::Bar;
 use crate::{Failure, Outcome};
@@ -158,7 +157,7 @@ impl SamplingArgs {
     pub(super) fn sampling(&self, frame: &Frame, bar: &Bar) -> Outcome<(Sampling, Value)> {
         let fitted = self.reconstruction.band_limited()?;
         if let Some(name) = &self.supersampling {
-            let pattern = supersampling(name)?;
+            let pattern = supersampling::pattern(name)?;
             let account = json!({
                 "supersampling": name,
                 "samples_per_pixel": pattern.samples_per_pixel(),
@@ -287,31 +286,6 @@ impl SamplingArgs {
         }
         only_set(path)
     }
-}
-
-/// More bytes than the longest supersampling pattern takes.
-const LONGEST: u64 = 16 << 20;
-
-/// The supersampling pattern of this name, or of a file.
-fn supersampling(name: &str) -> Outcome<Supersampling> {
-    if let Some(pattern) = bn_render::supersampling(name) {
-        return Ok(pattern);
-    }
-    // Pipes and devices don't know their length.
-    let mut text = String::new();
-    let read = File::open(name).and_then(|file| file.take(LONGEST + 1).read_to_string(&mut text));
-    let read = match read {
-        Ok(length) if length as u64 > LONGEST => {
-            Err("more than 16 MB are too long for a pattern".to_owned())
-        }
-        read => read.map_err(|error| error.to_string()),
-    };
-    read.map_err(|error| {
-        let known = SUPERSAMPLING.join(", ");
-        Failure::misuse(format!("--supersampling {name}: {error}; there are {known}, and files"))
-    })?;
-    let parsed = Supersampling::parse(name, &text);
-    parsed.map_err(|error| Failure::usage(anyhow!(error).context(name.to_owned())))
 }
 
 impl Sampling {
